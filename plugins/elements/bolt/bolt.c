@@ -104,7 +104,7 @@ enum { /* of a node */
        CUT,
        NODE_STATES
 };
-enum { AXIAL, SLIP, SHEAR, PLATE, SEAT, WHOLE_STATES }; /* of the whole */
+enum { AXIAL, SLIP, SHEAR, PLATE, SEAT, SLIPPED, BREAKS, WHOLE_STATES }; /* of the whole */
 
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "tension", "N", "in the steel from here to the next node"),
@@ -123,7 +123,9 @@ static const tl_state state_table[] = {
     TL_STATE(TL_STATE_WHOLE, "slip", "m", "largest slip of the grout, of either sign"),
     TL_STATE(TL_STATE_WHOLE, "shear", "N", "largest force of a dowel"),
     TL_STATE(TL_STATE_WHOLE, "plate", "N", "force of the plate on the rock"),
-    TL_STATE(TL_STATE_WHOLE, "seat", "m", "displacement of the mouth at which the plate bears nothing")};
+    TL_STATE(TL_STATE_WHOLE, "seat", "m", "displacement of the mouth at which the plate bears nothing"),
+    TL_STATE(TL_STATE_WHOLE, "slipped", "m", "length of the grout that has slipped"),
+    TL_STATE(TL_STATE_WHOLE, "breaks", "", "places where steel is broken or a dowel is cut")};
 
 /* ---------------------------------------------------------------- the bolt --------------- */
 
@@ -479,10 +481,32 @@ static void keep_grout(const bolt *t, const tl_element_batch *b, uint32_t e, boo
     b->element_state[SLIP][e] = most;
 }
 
+/* Counts the length of grout that has slipped. Where that is all on one side of a joint, and with a loss of bond, the
+ * bolt is pulled out: broken. */
+static void keep_bond(const bolt *t, const tl_element_batch *b, uint32_t e)
+{
+    const chain *c = &t->c;
+    double slipped = 0, side = 0, side_slipped = 0;
+    for (uint32_t k = 0, next = 0; k < c->count; k++) {
+        const double length = b->state[GROUTED][t->row[k]];
+        side += length;
+        side_slipped += c->worn[k] && c->residual[k] < c->bond[k] ? length : 0;
+        slipped += c->worn[k] ? length : 0;
+        const bool crosses = next < t->crossings && t->cross[next].segment == k;
+        if (!crosses && k + 1 < c->count)
+            continue;
+        if (t->crossings > 0 && side > 0 && side_slipped == side)
+            b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
+        next += crosses;
+        side = side_slipped = 0;
+    }
+    b->element_state[SLIPPED][e] = slipped;
+}
+
 static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b, uint32_t e, books *sum)
 {
     const chain *c = &t->c;
-    double most = 0;
+    double most = 0, cuts = 0;
     for (uint32_t k = 0; k < c->count; k++) {
         const uint32_t i = t->row[k];
         const bool last = k + 1 == c->count;
@@ -497,8 +521,10 @@ static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b
             b->state[CUT][i] = 1; /* it bears nothing from the next step on */
             b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
         }
+        cuts += b->state[CUT][i];
     }
     b->element_state[AXIAL][e] = most;
+    b->element_state[BREAKS][e] = cuts;
 }
 
 /* The mouth that moves by x presses the plate by (P' - P) / k; the rest of x crushes it or is a gap. */
@@ -540,6 +566,7 @@ static void keep_dowels(bolt *t, const params *p, const tl_element_batch *b, uin
         b->flags[e] |= has < p->dowel_stiffness ? (uint32_t)TL_ELEMENT_YIELDED : 0;
         *dowel = x->shear;
         most = larger(most, x->shear);
+        b->element_state[BREAKS][e] += p->dowel_stiffness > 0 && *peak >= p->dowel_rupture;
     }
     b->element_state[SHEAR][e] = most;
 }
@@ -617,6 +644,8 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
             keep_grout(&t, b, e, &sum);
             keep_steel(&t, p, b, e, &sum);
             keep_dowels(&t, p, b, e, &sum);
+            if (b->flags[e] & (uint32_t)TL_ELEMENT_YIELDED)
+                keep_bond(&t, b, e);
         }
         put_forces(&t, b, e);
         /* what gone nodes held is heat */
