@@ -150,6 +150,7 @@ refuse({ grout_residual = 5e5 }, "grout_residual = 500000 N/m is above grout_str
 refuse({ grouted_from = 0.5, grouted_to = 0.5 }, "grouted_from = 0.5 must be below grouted_to = 0.5")
 refuse({ pretension = 3e5 }, "pretension = 300000 N is above what steel (240000 N) and plate (200000 N) bear")
 refuse({ pretension = 1e5, grout_strength = 1e4 }, "pulls the bolt out of its grout")
+refuse({ pretension = 1e5, young = 1e8 }, "pretension = 100000 N strains the steel by 1.6")
 refuse({ spacing = 0.002 }, "more than 512 nodes")
 refuse({ diameter = 25 }, "diameter")
 

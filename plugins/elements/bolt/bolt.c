@@ -260,6 +260,12 @@ static tl_status tighten(const tl_element_host *host, const params *p, chain *c,
                           "pretension = %g N pulls the bolt out of its grout: lower it, or grout "
                           "more of the bolt",
                           p->pretension);
+    for (uint32_t k = 0; k + 1 < c->count; k++)
+        if (fabs(c->w[k + 1] - c->w[k]) >= p->rupture_strain * c->gauge[k])
+            return host->fail(host, TL_E_ARGUMENT,
+                              "pretension = %g N strains the steel by %g, and rupture_strain = %g: lower it, or take a "
+                              "stiffer steel",
+                              p->pretension, fabs(c->w[k + 1] - c->w[k]) / c->gauge[k], p->rupture_strain);
     double axial = 0;
     for (uint32_t k = 0; k < c->count; k++) {
         double *of = &state[k * NODE_STATES];
