@@ -95,6 +95,7 @@ local TITLES = {
     { "FS.plane", "factor of safety of a prism on a plane" },
     { "FS.bolt_active", "factor of safety of a prism held by an anchor" },
     { "FS.bolt_passive", "factor of safety of a prism held by a bolt that yields" },
+    { "FS.wedge.anchors", "factor of safety of a wedge with anchors" },
     { "FS.wedges", "factors of safety of wedges with water and bolts" },
     { "FS.two_blocks", "factor of safety of two blocks that push" },
     { "FS.random", "factors of safety of random wedges" },
