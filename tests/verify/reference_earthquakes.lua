@@ -60,6 +60,17 @@ reference.site = {
     density = 2500, ks = 1e9, f1 = 5.45249023021, f2 = 16.3254733099,
 }
 
+-- Surface over outcrop of an undamped layer of soil of 40 m on rock: 1 / |cos(k H) + i a sin(k H)|, a the ratio of impedances
+-- of soil and rock.
+reference.amplification = {
+    source = "J. M. Roesset, in: Numerical Methods in Geotechnical Engineering (1977); S. L. Kramer, Geotechnical "
+        .. "Earthquake Engineering (1996)",
+    blocks = 20, height = 2, density = 2500, speed = 894.427191, impedance_ratio = 0.25,
+    { frequency = 1, ratio = 1.03812121412 }, { frequency = 2, ratio = 1.16737754614 },
+    { frequency = 5.5901699437494745, ratio = 4 }, { frequency = 6, ratio = 3.65445897594 },
+    { frequency = 16.77050983124842, ratio = 4 },
+}
+
 -- A block of b along a plane of dip `dip` and h across it, pushed by kh times its weight out of the slope. The water behind
 -- it, to a height `water`, and below it push with V and U.
 reference.kh = {

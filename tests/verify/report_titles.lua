@@ -39,6 +39,7 @@ local TITLES = {
     { "DYN.quiet.pulse", "pulses that leave through quiet faces" },
     { "DYN.quiet.reflection", "waves that a quiet face sends back, by blocks a wave" },
     { "DYN.rayleigh", "fraction of critical damping of a block on its joint" },
+    { "DYN.site.amplification", "motion of a layer of soil over that of its rock" },
     { "DYN.site.frequency", "small vibrations of a column that shears" },
     { "KH.block%.(.+)", "block on a plane, pushed by part of its weight, %1" },
     { "DF.uniaxial", "zones: cube under uniaxial stress" },
