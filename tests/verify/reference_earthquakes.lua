@@ -97,4 +97,13 @@ reference.input = {
     ks = 1e9, size = 0.1, T = 0.4, peak = 0.2, arrival = 0.04472135955,
 }
 
+-- Ground that is the same everywhere and goes on for ever cannot tell its columns apart: 10 x 1 x 10 blocks, the wave
+-- size sin^2(pi t / T) coming in. Quiet sides in the place of free fields lose at least that part of the peak.
+reference.free_field = {
+    source = "symmetry; P. A. Cundall, H. Hansteen, S. Lacasse and P. B. Selnes, NESSI, Norwegian Geotechnical Institute, "
+        .. "report 51508-9 (1980)",
+    blocks = 10, height = 2, density = 2500, kn = 2.5e9, ks = 1e9, size = 1e-3, T = 0.1, difference = 1e-6,
+    quiet_sides_lose = 0.2,
+}
+
 return reference
