@@ -87,7 +87,7 @@ static const tl_lua_key boundary_keys[] = {
     {"velocity", "{x, y, z} or function(t)",
      "prescribes the velocity of the faces, m/s; rigid bodies move with it whole"},
     {"input", "{x, y, z}, each a record or 0",
-     "of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)"},
+     "of quiet faces: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)"},
     {"xmin, xmax", "\"roller\", \"fixed\", \"free_field\" or a table of what is to be done",
      "several sides in one call"},
     {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
@@ -434,7 +434,7 @@ static int model_boundary(lua_State *L, tl_model *model)
     holder *h = push_holder(L), *done = push_holder(L);
     tl_lua_ok(L, model, tl_model_boundary(model, found, count, add, h->result));
     tl_lua_quiet quiet[SIDES];
-    const tl_lua_sides call = {actions, h->result, free_field, count, sides > 0};
+    const tl_lua_sides call = {actions, h->result, free_field, count, add, sides > 0};
     const size_t quiets = tl_lua_quiet_plan(L, model, &call, quiet, planned);
     bool acts = false;
     for (size_t i = 0; i < count; i++) {

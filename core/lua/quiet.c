@@ -8,6 +8,7 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
+#include "lua/incoming.h"
 #include "lua/living.h"
 #include "lua/record.h"
 
@@ -22,6 +23,7 @@
 
 #define QUIET "quiet"
 #define FREE_FIELD "free_field"
+#define INCOMING "incoming"
 /* Tolerance: least component of the normal of a face along an axis for the face to look along it. */
 #define ALONG 0.99995
 
@@ -302,24 +304,32 @@ static void end_plan(lua_State *L, tl_model *model, tl_lua_quiet *plan)
     free(places);
 }
 
+/* Waves that come in through quiet faces of deformable blocks, whose dashpots the kernel has. */
+static void plan_incoming(lua_State *L, tl_model *model, tl_lua_quiet *plan)
+{
+    const bool input = tl_lua_option(L, plan->table, "input") != LUA_TNIL;
+    lua_pop(L, 1);
+    plan->kind = input ? INCOMING : NULL;
+    if (!input)
+        return;
+    lua_newtable(L);
+    put_waves(L, model, plan->table);
+    tl_lua_incoming_put(L, model, plan->faces, plan->face_count);
+    end_plan(L, model, plan);
+}
+
+/* false: the kernel makes the dashpots of faces of deformable blocks. */
 static bool plan_quiet(lua_State *L, tl_model *model, const tl_lua_sides *sides, size_t which, tl_lua_quiet *plan)
 {
     const tl_boundary_action *a = &sides->actions[which];
-    if (!a->quiet)
-        return false;
     if (a->fixed || a->roller || a->drive)
         tl_lua_fail(L, "boundary: a quiet face moves, so it cannot be held as well: give quiet without fixed, roller "
                        "and velocity");
     *plan = begin_plan(L, sides, which, QUIET);
-    const bool rigid = are_rigid(L, model, plan);
-    const bool input = tl_lua_option(L, plan->table, "input") != LUA_TNIL;
-    if (!rigid && input)
-        tl_lua_fail(L,
-                    "boundary: waves come in through quiet faces of rigid blocks, and block %d is deformable: let "
-                    "them in through a row of rigid blocks",
-                    (int)plan->block[0]);
-    if (!rigid)
+    if (!are_rigid(L, model, plan)) {
+        plan_incoming(L, model, plan);
         return false;
+    }
     plan_release(L, model, sides, plan);
     lua_newtable(L);
     put_rock(L, model, plan->table, "");
@@ -373,7 +383,7 @@ static const tl_lua_quiet *base_of(const tl_lua_sides *sides, const tl_lua_quiet
 {
     for (size_t k = 0; k < sides->count; k++)
         for (size_t i = 0; i < quiets && sides->actions[k].where.side == TL_SIDE_ZMIN; i++)
-            if (quiet[i].faces == sides->found[k].faces)
+            if (quiet[i].faces == sides->found[k].faces && quiet[i].kind && strcmp(quiet[i].kind, QUIET) == 0)
                 return &quiet[i];
     return NULL;
 }
@@ -426,12 +436,27 @@ void tl_lua_free_field_damp(lua_State *L, tl_model *model)
 
 /* ---------------------------------------------------------------- plans ------------------ */
 
+static bool are_there(lua_State *L, tl_model *model, const char *kind)
+{
+    const tl_element_filter filter = {.size = sizeof filter, .kind = kind};
+    tl_id *ids = NULL;
+    size_t count = 0;
+    tl_lua_ok(L, model, tl_elements_select(model, &filter, &ids, &count));
+    free(ids);
+    return count > 0;
+}
+
 size_t tl_lua_quiet_plan(lua_State *L, tl_model *model, const tl_lua_sides *sides, tl_lua_quiet *plans, bool *planned)
 {
     size_t count = 0;
+    const bool incoming = are_there(L, model, INCOMING);
     for (size_t i = 0; i < sides->count; i++) {
-        planned[i] = plan_quiet(L, model, sides, i, &plans[count]);
-        count += planned[i];
+        const tl_boundary_action *a = &sides->actions[i];
+        const bool other = incoming && !sides->add && (a->loads || a->fixed || a->roller || a->drive);
+        planned[i] = a->quiet && plan_quiet(L, model, sides, i, &plans[count]);
+        if (other && !a->quiet)
+            plans[count] = begin_plan(L, sides, i, NULL);
+        count += a->quiet || other;
     }
     const size_t quiets = count;
     for (size_t i = 0; i < sides->count; i++)
@@ -473,7 +498,7 @@ static bool is_in_the_way(tl_model *model, tl_id element, const tl_lua_quiet *pl
 {
     tl_element_info info;
     *status = tl_element_get(model, element, &info);
-    const bool one_face = *status == TL_OK && strcmp(info.kind->name, QUIET) == 0;
+    const bool one_face = *status == TL_OK && strcmp(info.kind->name, FREE_FIELD) != 0;
     double face = 0;
     tl_vec3 n = {0, 0, 0};
     if (one_face)
@@ -508,10 +533,12 @@ static tl_status give_way(tl_model *model, const tl_lua_quiet *plan, const char 
 
 void tl_lua_quiet_place(lua_State *L, tl_model *model, const tl_lua_quiet *plan)
 {
-    tl_status status = give_way(model, plan, QUIET);
-    if (status == TL_OK)
+    tl_status status = plan->kind ? give_way(model, plan, QUIET) : TL_OK;
+    if (status == TL_OK && plan->kind)
         status = give_way(model, plan, FREE_FIELD);
     if (status == TL_OK)
+        status = give_way(model, plan, INCOMING);
+    if (status == TL_OK && plan->kind)
         status = tl_model_element(model, plan->kind, &plan->args, 1, plan->kind, NULL, NULL);
     size_t count = 0;
     for (size_t i = 0; i < plan->face_count; i++)

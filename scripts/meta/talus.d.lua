@@ -500,6 +500,13 @@ function talus.help(topic) end
 ---@field alpha? number 1/s, in [0, 1e+50], default 0: Damping of the levels by their mass.
 ---@field beta? number s, in [0, 1e+50], default 0: Damping of the levels by their stiffness.
 
+--- Waves that come in through quiet faces of deformable blocks: model:boundary.
+---@class (exact) talus.element.Incoming
+---@field nodes string Numbers: block, face (from 0), place (m), outward normal, area (m2) and impedances of pressure and shear waves (Pa s/m), of one gridpoint after the other.
+---@field input_x? string Incoming wave along x, numbers as of the kind quiet.
+---@field input_y? string Likewise along y.
+---@field input_z? string Likewise along z.
+
 --- A spring and a dashpot between two points, of blocks or of the ground.
 ---@class (exact) talus.element.Spring
 ---@field from talus.Vector m: One end: on the block that it lies in, or on the ground.
@@ -1373,7 +1380,7 @@ function talus.solid_test(options) end
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
 ---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
----@field input? talus.Vector of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)
+---@field input? talus.Vector of quiet faces: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)
 ---@field xmin? "roller"|"fixed"|"free_field"|talus.BoundaryOptions several sides in one call
 ---@field xmax? "roller"|"fixed"|"free_field"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise

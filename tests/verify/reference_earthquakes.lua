@@ -106,4 +106,11 @@ reference.free_field = {
     quiet_sides_lose = 0.2,
 }
 
+-- A bar of zones, and pulses of so many metres: quiet faces leave at most that part of the energy.
+reference.quiet_zones = {
+    source = "J. Lysmer and R. L. Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969); W. B. Joyner and A. T. F. Chen, "
+        .. "Bull. Seism. Soc. Am. 65 (1975)",
+    E = 1e10, nu = 0.25, rho = 2500, zone = 1, length = 40, pulse = 24, size = 1e-3, left = 1e-3,
+}
+
 return reference

@@ -38,6 +38,8 @@ local TITLES = {
     { "DYN.modes.wall", "small vibrations of a wall of bricks" },
     { "DYN.newmark%.(%w+)", "block that slips on a plane shaken by a record, %1" },
     { "DYN.input.compliant", "wave that comes in through a quiet base" },
+    { "DYN.input.zones", "wave that comes in through a quiet face of zones" },
+    { "DYN.quiet.zones", "pulses that leave a bar of zones" },
     { "DYN.quiet.oblique", "waves that leave through a quiet face at an angle" },
     { "DYN.quiet.pulse", "pulses that leave through quiet faces" },
     { "DYN.quiet.reflection", "waves that a quiet face sends back, by blocks a wave" },

@@ -75,6 +75,26 @@ static double wave_at(const wave *w, double time)
     return (at[0] - first[0]) + x * (v + x * ((3 * rise - 2 * v - after) + x * (v + after - 2 * rise)));
 }
 
+/* Velocity of the wave at a time, m/s: what wave_at grows by. */
+static double speed_at(const wave *w, double time)
+{
+    const double t = time - w->begin;
+    if (w->count == 0 || !(t > 0))
+        return 0;
+    const double *first = w->sample + 2, place = t / w->dt;
+    const size_t last = w->count - 1;
+    if (place >= (double)last)
+        return first[2 * last + 1];
+    const size_t i = (size_t)place;
+    const double *at = first + 2 * i, x = place - (double)i, mean = (at[2] - at[0]) / w->dt;
+    return at[1] + x * (2 * (3 * mean - 2 * at[1] - at[3]) + 3 * x * (at[1] + at[3] - 2 * mean));
+}
+
+tl_vec3 half_space_speed(const wave w[3], double time)
+{
+    return tl_v3(speed_at(&w[0], time), speed_at(&w[1], time), speed_at(&w[2], time));
+}
+
 tl_vec3 half_space_came(const wave w[3], double time, double dt)
 {
     double in[3];

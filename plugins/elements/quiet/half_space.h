@@ -25,6 +25,9 @@ void half_space_free(wave w[3]);
 /* How far the waves move in a step that ends at `time`, m. */
 tl_vec3 half_space_came(const wave w[3], double time, double dt);
 
+/* Their velocities at a time, m/s. */
+tl_vec3 half_space_speed(const wave w[3], double time);
+
 /* The row of a face in a list of `count` rows of `width` numbers, which begin with block and face. NULL: it is not in
  * it. Rows and faces that are asked for go by ascending blocks and faces; `from` begins at 0. */
 const double *half_space_row(const double *rows, size_t width, size_t count, size_t *from, const tl_element_face *f);

@@ -1,4 +1,4 @@
-/* kinds.c - tables of the kinds "quiet" and "free_field", and their plugin. */
+/* kinds.c - tables of the kinds "quiet", "free_field" and "incoming", and their plugin. */
 #include "kinds.h"
 
 #include <talus/version.h>
@@ -97,13 +97,36 @@ static const tl_state free_state_table[] = {
     TL_STATE(TL_STATE_WHOLE, "step", "s", "time step before the last one"),
     TL_STATE(TL_STATE_WHOLE, "base_turn", "rad", "turn of the dashpot of the base")};
 
+/* ---------------------------------------------------------------- incoming --------------- */
+
+static const tl_param incoming_param_table[] = {
+    TL_PARAM(TL_PARAM_STRING, incoming_params, nodes, "",
+             "Numbers: block, face (from 0), place (m), outward normal, area (m2) and impedances of pressure and shear "
+             "waves (Pa s/m), of one gridpoint after the other.",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_PLACE),
+    TL_PARAM(TL_PARAM_STRING, incoming_params, input_x, "", "Incoming wave along x, numbers as of the kind quiet.",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, incoming_params, input_y, "", "Likewise along y.", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, incoming_params, input_z, "", "Likewise along z.", .flags = TL_PARAM_OPTIONAL)};
+
+static const tl_state incoming_state_table[] = {
+    TL_STATE(TL_STATE_SCALAR, "impedance_p", "Pa s/m", "density times the velocity of pressure waves"),
+    TL_STATE(TL_STATE_SCALAR, "impedance_s", "Pa s/m", "likewise of shear waves"),
+    TL_STATE(TL_STATE_WHOLE, "normal_x", "", "outward normal when placed"),
+    TL_STATE(TL_STATE_WHOLE, "normal_y", "", "likewise"),
+    TL_STATE(TL_STATE_WHOLE, "normal_z", "", "likewise"),
+    TL_STATE(TL_STATE_WHOLE, "face", "", "of the block, from 1")};
+
 static const tl_kind kinds[] = {
     TL_KIND(TL_KIND_ELEMENT, quiet_ops, .name = "quiet",
             .doc = "Outer faces of rigid blocks that let waves out: model:boundary.",
             TL_KIND_PARAMS(quiet_params, quiet_param_table), TL_KIND_STATES(quiet_state_table)),
     TL_KIND(TL_KIND_ELEMENT, free_field_ops, .name = "free_field",
             .doc = "Vertical sides of rigid blocks that move as the ground far away: model:boundary.",
-            TL_KIND_PARAMS(free_field_params, free_param_table), TL_KIND_STATES(free_state_table))};
+            TL_KIND_PARAMS(free_field_params, free_param_table), TL_KIND_STATES(free_state_table)),
+    TL_KIND(TL_KIND_ELEMENT, incoming_ops, .name = "incoming",
+            .doc = "Waves that come in through quiet faces of deformable blocks: model:boundary.",
+            TL_KIND_PARAMS(incoming_params, incoming_param_table), TL_KIND_STATES(incoming_state_table))};
 
 TL_PLUGIN_SINCE(13, kinds, .id = "talus.quiet", .version = TALUS_VERSION, .doc = "Quiet faces and free fields.",
                 .licence = "BSD-3-Clause");

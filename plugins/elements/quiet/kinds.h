@@ -1,4 +1,4 @@
-/* kinds.h - parameters and states of the kinds "quiet" and "free_field". */
+/* kinds.h - parameters and states of the kinds "quiet", "free_field" and "incoming". */
 #ifndef QUIET_KINDS_H
 #define QUIET_KINDS_H
 
@@ -50,5 +50,16 @@ enum {
 enum { NORMAL_X, NORMAL_Y, COUNT, STEP, BASE_TURN, WHOLE_STATES }; /* of the whole */
 
 extern const tl_element_ops free_field_ops;
+
+/* ---------------------------------------------------------------- incoming --------------- */
+
+typedef struct incoming_params {
+    const char *nodes;
+    const char *input_x, *input_y, *input_z;
+} incoming_params;
+
+enum { INCOMING_ALONG, INCOMING_ACROSS, INCOMING_NODE_STATES }; /* of a node */
+
+extern const tl_element_ops incoming_ops;
 
 #endif
