@@ -24,6 +24,7 @@ local TITLES = {
     { "D.top%.(%w+)", "box that spins freely about its %1 axis" },
     { "D.tray", "stones that fall into a tray" },
     { "BACK.plane", "friction by back-analysis of a block on a plane" },
+    { "DF.reservoir%.(%w+)", "dam of zones before a reservoir, %1" },
     { "DFN.baecher.P32", "intensity of networks of discs" },
     { "DFN.fisher.(%d+)", "poles after Fisher, concentration %1" },
     { "DFN.power_law.([%d.]+)", "radii of a power law, exponent %1" },
