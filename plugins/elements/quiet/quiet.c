@@ -116,16 +116,16 @@ typedef struct sums {
 } sums;
 
 /* Moves the dashpot of node i along, and puts the force on the block. */
-static void act(const half_space *h, const tl_element_batch *b, uint32_t i, tl_vec3 n, tl_vec3 in, sums *sum)
+static inline void act(const half_space *h, const tl_element_batch *b, uint32_t i, tl_vec3 n, tl_vec3 in, sums *sum)
 {
-    const double area = b->weight[i], per = b->dt > 0 ? 1 / b->dt : 0;
+    const double area = b->weight[i];
     const tl_vec3 u = {b->u[0][i], b->u[1][i], b->u[2][i]}, du = {b->du[0][i], b->du[1][i], b->du[2][i]};
     const tl_vec3 s = {b->state[QUIET_SHIFT_X][i], b->state[QUIET_SHIFT_Y][i], b->state[QUIET_SHIFT_Z][i]};
     const tl_vec3 now = half_space_follow(h, s, u, du, in, n);
     const tl_vec3 d = tl_v3_sub(u, now), out = tl_v3_sub(tl_v3_sub(now, s), in);
     const tl_vec3 f = tl_v3_scale(area, half_space_parts(h->k, d, n));
     sum->stored += 0.5 * area * half_space_square(h->k, d, n);
-    sum->lost += per * area * half_space_square(h->z, out, n);
+    sum->lost += area * half_space_square(h->z, out, n);
     sum->area += area;
     double force[] = {-f.x, -f.y, -f.z};
     for (int k = 0; k < 3; k++) {
@@ -142,9 +142,16 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     (void)report;
     const face_kind *kind = self;
     const tl_vec3 in = half_space_came(kind->wave, b->time, b->dt);
+    const double per = b->dt > 0 ? 1 / b->dt : 0;
+    double *const *of = b->element_state;
+    half_space h = {.k = {0, 0}};
+    double height = NAN, density = NAN; /* of h: most faces of a side have the same */
     for (uint32_t e = 0; e < b->count; e++) {
-        double *const *of = b->element_state;
-        const half_space h = cut_off(&kind->given, of[QUIET_HEIGHT][e], of[QUIET_DENSITY][e], b->dt);
+        if (!(of[QUIET_HEIGHT][e] == height && of[QUIET_DENSITY][e] == density)) {
+            height = of[QUIET_HEIGHT][e];
+            density = of[QUIET_DENSITY][e];
+            h = cut_off(&kind->given, height, density, b->dt);
+        }
         const tl_vec3 n = {of[QUIET_NORMAL_X][e], of[QUIET_NORMAL_Y][e], of[QUIET_NORMAL_Z][e]};
         sums sum = {0, 0, 0, 0};
         bool gone = false; /* a part of the block, and with it what the springs there hold */
@@ -152,8 +159,8 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
             gone = gone || b->weight[i] == 0;
             act(&h, b, i, n, in, &sum);
         }
-        b->given[e] = b->dt > 0 ? sum.area * half_space_square(h.z, in, n) / b->dt : 0;
-        b->lost[e] = gone ? b->stored[e] + sum.work + b->given[e] - sum.stored : sum.lost;
+        b->given[e] = per * sum.area * half_space_square(h.z, in, n);
+        b->lost[e] = gone ? b->stored[e] + sum.work + b->given[e] - sum.stored : per * sum.lost;
         b->stored[e] = sum.stored;
     }
     return TL_OK;
