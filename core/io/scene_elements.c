@@ -3,7 +3,8 @@
  * An element with nodes inside of blocks is a line through them. One with nodes on faces is shown where its kind has a
  * state "pressure": as the polygon in which its two walls face each other, or as its one wall. A pressure that is
  * linear on the polygon has three nodes on each wall. They give it at every corner, and the line on which it is zero:
- * the part beyond that is left out. Elements of other kinds on faces, as quiet ones, are not shown. */
+ * the part beyond that is left out. More than three nodes on a wall are the corners of the polygon, in order. Elements
+ * of other kinds on faces, as quiet ones, are not shown, nor lines on the ground whose nodes stand for nothing. */
 #include "io/scene_elements.h"
 
 #include "base/columns.h"
@@ -70,9 +71,21 @@ static bool has_pressure(const tl_kind *kind)
     return tl_element_column(kind, PRESSURE, &column, &whole) && !whole;
 }
 
+/* Whether any node is on a block, or stands for something. */
+static bool acts(const struct tl_elements *e, size_t row)
+{
+    bool any = false;
+    for (size_t k = 0; k < e->table.node_count[row] && !any; k++) {
+        const size_t node = e->table.node_begin[row] + k;
+        any = e->nodes.block[node] != TL_NO_ID || e->nodes.weight[node] > 0;
+    }
+    return any;
+}
+
 static bool is_shown(const struct tl_elements *e, size_t row)
 {
-    return is_line(e, row) ? e->table.node_count[row] > 1 : has_pressure(e->set[e->table.set[row]].kind);
+    return is_line(e, row) ? e->table.node_count[row] > 1 && acts(e, row)
+                           : has_pressure(e->set[e->table.set[row]].kind);
 }
 
 /* Adds states with a unit; those without are flags, of which the element's own tell. */
@@ -164,18 +177,6 @@ static void add_point(columns *c, tl_vec3 place, tl_id block)
 static tl_vec3 place_of(const tl_model *m, size_t node)
 {
     return tl_v3_add(tl_columns_get(m->elements->nodes.rest, node), tl_node_moved(m, node));
-}
-
-static void add_line(columns *c, size_t row)
-{
-    const struct tl_elements *e = c->m->elements;
-    const size_t begin = e->table.node_begin[row], end = begin + e->table.node_count[row];
-    add_element(c, row, end - begin, 0);
-    for (size_t node = begin; node < end; node++) {
-        add_point(c, place_of(c->m, node), e->nodes.block[node]);
-        for (size_t k = 0; k < c->of.count; k++)
-            add_f32(&c->value[k], number_of(e, row, node, c->of.at[k].name));
-    }
 }
 
 /* ---------------------------------------------------------------- walls ------------------ */
@@ -275,12 +276,46 @@ static size_t keep_wet(columns *c, const slope *pressure, size_t count)
     return kept;
 }
 
+/* Nodes, and their numbers. */
+static void add_nodes(columns *c, size_t row, size_t begin, size_t count)
+{
+    const struct tl_elements *e = c->m->elements;
+    for (size_t node = begin; node < begin + count; node++) {
+        add_point(c, place_of(c->m, node), e->nodes.block[node]);
+        for (size_t k = 0; k < c->of.count; k++)
+            add_f32(&c->value[k], number_of(e, row, node, c->of.at[k].name));
+    }
+}
+
+static void add_line(columns *c, size_t row)
+{
+    const tl_element_table *t = &c->m->elements->table;
+    add_element(c, row, t->node_count[row], 0);
+    add_nodes(c, row, t->node_begin[row], t->node_count[row]);
+}
+
+/* A polygon whose corners are nodes; nothing where all of it is dry. */
+static void add_corners(columns *c, size_t row, size_t begin, size_t count)
+{
+    bool wet = false;
+    for (size_t i = 0; i < count && !wet; i++)
+        wet = number_of(c->m->elements, row, begin + i, PRESSURE) > 0;
+    if (!wet)
+        return;
+    add_element(c, row, count, FACE);
+    add_nodes(c, row, begin, count);
+}
+
 static void add_wall(columns *c, size_t row)
 {
     const struct tl_elements *e = c->m->elements;
     const size_t begin = e->table.node_begin[row], last = begin + e->table.node_count[row] - 1;
     const bool two = e->nodes.block[begin] != e->nodes.block[last];
     const size_t nodes = two ? e->table.node_count[row] / 2 : e->table.node_count[row];
+    if (nodes > 3) {
+        add_corners(c, row, begin, nodes);
+        return;
+    }
     const size_t count = wall_of(c->m, begin, c->corner[0]), other = two ? wall_of(c->m, last, c->corner[1]) : 0;
     if (count < 3 || (two && other < 3))
         return;
