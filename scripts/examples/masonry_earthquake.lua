@@ -104,6 +104,6 @@ end
 
 -- A test that says require "examples.masonry_earthquake" wants the functions only.
 if ... ~= "examples.masonry_earthquake" then
-    wall.main(arg and arg[1] or "out/masonry_earthquake", tonumber(arg and arg[2] or 2))
+    wall.main(arg and arg[1] or "out/masonry_earthquake", tonumber(arg and arg[2] or 3))
 end
 return wall
