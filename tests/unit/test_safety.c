@@ -151,12 +151,16 @@ TEST(a_search_that_is_stopped_leaves_the_model)
     char before[33], after[33];
     tl_safety_result result;
     CHECK_INT(tl_state_hash(m, before), TL_OK);
-    for (int k = 0; k < 20; k++) {
+    for (int k = 0; k < 400; k += 1 + k / 8) { /* in the copy that settles, and in trials */
         asked_before = k;
         tl_model_interrupt_if(m, asked);
         CHECK_INT(tl_model_factor_of_safety(m, NULL, &result), TL_E_CANCELLED);
         CHECK_CONTAINS(tl_model_error(m)->text, "the model is as it was");
         CHECK(result.trials == NULL && result.failing.ids == NULL);
+        tl_safety_map map;
+        asked_before = k;
+        CHECK_INT(tl_model_safety_map(m, NULL, &map), TL_E_CANCELLED);
+        CHECK(map.ids == NULL && map.factor == NULL && map.curve == NULL);
         tl_model_interrupt_if(m, NULL);
         CHECK_INT(tl_state_hash(m, after), TL_OK);
         CHECK_TEXT(after, before);
