@@ -4,11 +4,11 @@
  * slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
  * (cycle/relax.c) or something moves on.
  *
- * Two scales come from the model itself: u, how far its joints settle under what they bear, and N, the steps in which
- * the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its weight, so what
- * moves then slips. What is held by friction slips for a while and is slower from look to look. What is not held
- * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
- * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
+ * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
+ * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
+ * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What is
+ * not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter,
+ * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
  * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is made again
@@ -104,6 +104,8 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
         status = tl_solids_weaken(copy, t->asked, factor);
     if (status == TL_OK && t->stiffness > 1)
         status = tl_joints_stiffen(copy, t->stiffness);
+    if (status == TL_OK && t->options.elements)
+        status = tl_elements_weaken(copy, t->asked, factor);
     return told(t, copy, status);
 }
 
@@ -209,6 +211,7 @@ static tl_status choose_laws(tl_trials *t)
         some = some || tl_kind_has_strength(m->zones->solid[k].of.kind);
     if (status == TL_OK && !some)
         return say_unmarked(t);
+    some = some || (o->elements && tl_elements_have_strength(m));
     for (size_t i = 0; i < m->joint_law_count; i++)
         t->which[i] = t->which[i] && tl_kind_has_strength(m->joint_laws[i].kind);
     return status;
@@ -434,7 +437,7 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 static double settles_now(const tl_model *copy)
 {
     tl_watch *w = tl_watch_begin(copy);
-    const double settles = w ? tl_watch_settlement(w, copy) : 0;
+    const double settles = w ? tl_watch_settlement(w, copy) + tl_elements_settlement(copy) : 0;
     if (w)
         tl_watch_end(w);
     return settles;
@@ -551,7 +554,7 @@ static tl_status measure(tl_trials *t, int64_t settled)
         return tl_fail_memory(&t->asked->error);
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
-    t->settles = tl_watch_settlement(w, t->base);
+    t->settles = tl_watch_settlement(w, t->base) + tl_elements_settlement(t->base);
     t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
