@@ -31,11 +31,12 @@ typedef struct search {
 static const char *const mode_names[] = {[TL_SAFETY_HOLDS] = "holds",
                                          [TL_SAFETY_SLIDES] = "slides",
                                          [TL_SAFETY_TURNS] = "turns",
-                                         [TL_SAFETY_FALLS] = "falls"};
+                                         [TL_SAFETY_FALLS] = "falls",
+                                         [TL_SAFETY_YIELDS] = "yields"};
 
 const char *tl_safety_mode_name(tl_safety_mode mode)
 {
-    return (unsigned)mode <= TL_SAFETY_FALLS ? mode_names[mode] : "?";
+    return (unsigned)mode <= TL_SAFETY_YIELDS ? mode_names[mode] : "?";
 }
 
 /* ---------------------------------------------------------------- keyblocks -------------- */
@@ -218,7 +219,7 @@ static void take_fall(tl_safety_result *r, tl_fall *fall)
 
 static void tell(const search *s)
 {
-    static const char *const goes[] = {"", "slide", "turn", "fall"};
+    static const char *const goes[] = {"", "slide", "turn", "fall", "yield"};
     tl_safety_result *r = s->result;
     char what[160] = "";
     if (r->failing.count > 0)

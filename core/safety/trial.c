@@ -313,6 +313,7 @@ typedef struct watch {
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     const char *why;
 } watch;
+    bool strained; /* ... for it is strained on and on */
 
 static tl_status on_step(void *user, tl_model *copy)
 {
@@ -397,6 +398,13 @@ static uint32_t fastest_of(const watch *w, const tl_model *m)
 
 /* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
  * While what is small falls, the rest may settle as fast, but not as far. */
+/* Sum of the sizes of forces that bear a body, N: of contacts and, of a deformable one, of what holds its points. */
+static double borne_by(const tl_model *m, uint32_t body)
+{
+    const tl_body_mesh *mesh = tl_mesh_of_body(m, body);
+    return mesh ? tl_mesh_whole_of(m, mesh).borne : m->cycle->contact_force[body];
+}
+
 static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 {
     const uint32_t fastest = fastest_of(w, m);
@@ -422,14 +430,15 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
         tl_addends_put(&sum[2], own * gone.z);
         tl_addends_put(&ways, own * tl_v3_norm(gone));
         tl_addends_put(&turns, own * turned_of(m, l, body));
-        tl_addends_put(&bears, share * m->cycle->contact_force[body]);
+        tl_addends_put(&bears, share * borne_by(m, body));
         tl_addends_put(&weighs, own * tl_v3_norm(m->config.gravity));
     }
     fall->volume = tl_addends_sum(&volume);
     fall->way = tl_v3_unit(tl_v3(tl_addends_sum(&sum[0]), tl_addends_sum(&sum[1]), tl_addends_sum(&sum[2])));
-    fall->mode = tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
-                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)        ? TL_SAFETY_TURNS
-                                                                         : TL_SAFETY_SLIDES;
+    fall->mode = w->strained                                               ? TL_SAFETY_YIELDS
+                 : tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
+                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)          ? TL_SAFETY_TURNS
+                                                                           : TL_SAFETY_SLIDES;
     return TL_OK;
 }
 
@@ -502,6 +511,7 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
         w->verdict = r->run.failing;
     if (copy->cycles > w->looked)
         looks(w, copy); /* the ways since the last look */
+    w->strained = fails && copy->cycle->fails_strained;
     tl_status status = list_fall(w, copy, fall);
     if (status != TL_OK || trial->undecided || !left || !(fall->volume < t->options.least_volume))
         return status;

@@ -18,7 +18,8 @@ typedef enum tl_safety_mode {
     TL_SAFETY_HOLDS,  /* nothing fails */
     TL_SAFETY_SLIDES, /* along what bears it */
     TL_SAFETY_TURNS,  /* its corners go farther by rotation than its centre does */
-    TL_SAFETY_FALLS   /* nothing bears it */
+    TL_SAFETY_FALLS,  /* nothing bears it */
+    TL_SAFETY_YIELDS  /* a deformable block is strained on and on */
 } tl_safety_mode;
 
 /* One trial: a copy of the model with its strengths divided by a factor. */
@@ -100,7 +101,7 @@ typedef struct tl_safety_map {
 TL_API tl_status tl_model_factor_of_safety(struct tl_model *model, const tl_safety *options, tl_safety_result *result);
 /* The same for every block: the factor goes up by steps, and what has failed is deleted or held before it goes on. */
 TL_API tl_status tl_model_safety_map(struct tl_model *model, const tl_safety *options, tl_safety_map *map);
-/* "holds", "slides", "turns" or "falls". */
+/* "holds", "slides", "turns", "falls" or "yields". */
 TL_API const char *tl_safety_mode_name(tl_safety_mode mode);
 /* Free the lists of a result and empty it. */
 TL_API void tl_safety_free(tl_safety_result *result);
