@@ -6,8 +6,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "model/scope.h"
-#include "safety/ahead.h"
-#include "safety/trial.h"
+#include "safety/narrow.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,23 +108,17 @@ static tl_status list_trial(search *s, const tl_safety_trial *trial)
     return TL_OK;
 }
 
-/* Tries one factor of the grid. */
-static tl_status try_at(search *s, int64_t at)
+/* Keeps what fails at the least factor that does. */
+static tl_status take_trial(void *user, const tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_safety_trial trial;
-    tl_fall fall;
-    tl_status status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
-    if (status != TL_OK)
-        return status;
-    status = list_trial(s, &trial);
-    tl_bracket_take(&s->bracket, at, trial.holds != 0);
-    if (trial.holds && s->bracket.fails <= (int64_t)s->last) {
-        tl_fall_free(&fall);
-        return status;
+    search *s = user;
+    if (trial->holds && s->bracket.fails <= (int64_t)s->last) {
+        tl_fall_free(fall);
+    } else {
+        tl_fall_free(&s->fall);
+        s->fall = *fall;
     }
-    tl_fall_free(&s->fall);
-    s->fall = fall;
-    return status;
+    return list_trial(s, trial);
 }
 
 static int64_t clamped(const search *s, int64_t at)
@@ -170,22 +163,13 @@ static tl_status narrow(search *s)
     const int64_t middle = place_of(s, key > 0 && isfinite(key) ? key : 1);
     const int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
     const int64_t last = (int64_t)s->last;
-    tl_status status = TL_OK;
     s->bracket = (tl_bracket){.last = last,
                               .holds = -1,
                               .fails = last + 1,
                               .first = clamped(s, middle - width),
                               .second = clamped(s, middle + width),
                               .width = width};
-    while (status == TL_OK) {
-        status = tl_ahead(&s->trials, &s->bracket, factor_at, s);
-        const int64_t at = tl_bracket_next(&s->bracket);
-        if (at < 0)
-            break;
-        if (status == TL_OK)
-            status = try_at(s, at);
-    }
-    return status;
+    return tl_narrow(&s->trials, &s->bracket, factor_at, take_trial, s);
 }
 
 /* ---------------------------------------------------------------- result ----------------- */

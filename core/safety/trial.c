@@ -11,8 +11,9 @@
  * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
- * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is made again
- * with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
+ * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
+ * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
+ * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
  * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
@@ -27,6 +28,7 @@
 #include "base/number.h"
 #include "base/strength.h"
 #include "cycle/cycle_data.h"
+#include "cycle/element_forces.h"
 #include "cycle/failing.h"
 #include "cycle/joint_law.h"
 #include "cycle/meshes.h"
@@ -102,10 +104,10 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
     tl_status status = tl_joints_weaken(copy, t->asked, t->which, factor);
     if (status == TL_OK && t->options.solids)
         status = tl_solids_weaken(copy, t->asked, factor);
-    if (status == TL_OK && t->stiffness > 1)
-        status = tl_joints_stiffen(copy, t->stiffness);
     if (status == TL_OK && t->options.elements)
         status = tl_elements_weaken(copy, t->asked, factor);
+    if (status == TL_OK && t->stiffness > 1)
+        status = tl_joints_stiffen(copy, t->stiffness);
     return told(t, copy, status);
 }
 
@@ -209,9 +211,9 @@ static tl_status choose_laws(tl_trials *t)
     }
     for (size_t k = 0; o->solids && m->zones && k < m->zones->solid_count; k++)
         some = some || tl_kind_has_strength(m->zones->solid[k].of.kind);
+    some = some || (o->elements && tl_elements_have_strength(m));
     if (status == TL_OK && !some)
         return say_unmarked(t);
-    some = some || (o->elements && tl_elements_have_strength(m));
     for (size_t i = 0; i < m->joint_law_count; i++)
         t->which[i] = t->which[i] && tl_kind_has_strength(m->joint_laws[i].kind);
     return status;
@@ -311,9 +313,9 @@ typedef struct watch {
     int64_t looked; /* cycle of the last look */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
+    bool strained; /* ... for it is strained on and on */
     const char *why;
 } watch;
-    bool strained; /* ... for it is strained on and on */
 
 static tl_status on_step(void *user, tl_model *copy)
 {
@@ -396,8 +398,6 @@ static uint32_t fastest_of(const watch *w, const tl_model *m)
     return fastest;
 }
 
-/* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
- * While what is small falls, the rest may settle as fast, but not as far. */
 /* Sum of the sizes of forces that bear a body, N: of contacts and, of a deformable one, of what holds its points. */
 static double borne_by(const tl_model *m, uint32_t body)
 {
@@ -405,6 +405,8 @@ static double borne_by(const tl_model *m, uint32_t body)
     return mesh ? tl_mesh_whole_of(m, mesh).borne : m->cycle->contact_force[body];
 }
 
+/* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
+ * While what is small falls, the rest may settle as fast, but not as far. */
 static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 {
     const uint32_t fastest = fastest_of(w, m);
@@ -509,9 +511,9 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
         return TL_OK;
     if (fails)
         w->verdict = r->run.failing;
+    w->strained = fails && copy->cycle->fails_strained;
     if (copy->cycles > w->looked)
         looks(w, copy); /* the ways since the last look */
-    w->strained = fails && copy->cycle->fails_strained;
     tl_status status = list_fall(w, copy, fall);
     if (status != TL_OK || trial->undecided || !left || !(fall->volume < t->options.least_volume))
         return status;
@@ -677,21 +679,26 @@ static tl_status make_stiffer(tl_trials *t, bool *usable)
     return status;
 }
 
-/* Makes a trial, with stiffer and stiffer joints while it rests and that may hang on how soft they are. */
-static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+/* Makes a trial that has come to rest again, with stiffer and stiffer joints while it rests, and may rest only because
+ * they are soft. */
+static tl_status confirm(tl_trials *t, tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_status status = make_one(t, factor, trial, fall);
+    const double factor = trial->factor;
     int64_t cycles = trial->cycles;
-    double before = 0;
-    bool usable = true;
-    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SLIPS, GROWN * before);) {
-        before = at->moved;
+    double moved = fall->moved, before = 0;
+    tl_status status = TL_OK;
+    for (tl_trials *at = t; trial->holds && moved > fmax(SLIPS, GROWN * before);) {
+        bool usable;
+        before = moved;
         status = make_stiffer(at, &usable);
         at = at->stiffer;
         if (status != TL_OK || !usable)
             break;
         tl_fall_free(fall);
         status = make_one(at, factor, trial, fall);
+        if (status != TL_OK)
+            break;
+        moved = at->moved;
         cycles += trial->cycles;
         t->cycles += trial->cycles;
     }
@@ -700,12 +707,19 @@ static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fa
     return status;
 }
 
-tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
-    *fall = (tl_fall){.ids = NULL};
-    tl_status status = TL_OK;
-    if (!take_made(t, factor, trial, fall))
-        status = make(t, factor, trial, fall);
+    tl_status status = make_one(t, factor, trial, fall);
+    trial->factor = factor;
+    fall->moved = t->moved;
+    if (status == TL_OK && t->confirms)
+        status = confirm(t, trial, fall);
+    return status;
+}
+
+/* Counts a trial, and tells of it. */
+static tl_status finish(tl_trials *t, tl_status status, const tl_safety_trial *trial, tl_fall *fall)
+{
     t->undecided += status == TL_OK && trial->undecided ? 1 : 0;
     if (status == TL_OK && t->options.on_trial) {
         tl_model_only_read(t->asked, true);
@@ -715,6 +729,30 @@ tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_
     if (status != TL_OK)
         tl_fall_free(fall);
     return status;
+}
+
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = TL_OK;
+    if (!take_made(t, factor, trial, fall))
+        status = make(t, factor, trial, fall);
+    return finish(t, status, trial, fall);
+}
+
+tl_status tl_trials_confirm(tl_trials *t, double factor, double moved, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.moved = moved};
+    *trial = (tl_safety_trial){.factor = factor, .holds = 1, .why = "at rest"};
+    const tl_status status = confirm(t, trial, fall);
+    return status == TL_OK && trial->cycles == 0 ? status : finish(t, status, trial, fall);
+}
+
+void tl_trials_confirm_all(tl_trials *t, bool all)
+{
+    if (t->confirms != all)
+        forget_made(t);
+    t->confirms = all;
 }
 
 void tl_trials_end(tl_trials *t)
