@@ -166,7 +166,7 @@ export function makeRun(app) {
                 "Safety",
                 () => {
                     say("Trials on copies are made: the run waits.");
-                    command({op: "safety"});
+                    command({op: "factor_of_safety"});
                 },
                 "Find the factor of safety, and pick what fails")),
         element("h2", {}, "Cut"), labelled("joint", joint, names),
@@ -235,7 +235,7 @@ export function makeRun(app) {
             }
         }
         if (words && !anew && app.model.frames.length > 1) {
-            const [first, ...more] = /^model:factor_of.*; blocks (.*)/.exec(words)?.[1].split(", ").map(Number) ?? [];
+            const [first, ...more] = /^print\(model:factor_of.*; blocks (.*)/.exec(words)?.[1].split(", ").map(Number) ?? [];
             if (first) app.pick(first);
             for (const id of more) app.pickMore(id);
             say(words, bad);

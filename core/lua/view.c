@@ -270,14 +270,15 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
 /* Blocks that a finding names at most. */
 #define NAMED 256
 
-/* Adds to the line at the top of the stack what a search for a factor of safety has found, below it, as a comment. */
+/* Makes of the line at the top of the stack, and of what it has given, below it, a line that prints what a search for a
+ * factor of safety finds, and has found: its sentence, and the blocks that fail. */
 static void add_finding(lua_State *L)
 {
     const int result = lua_gettop(L) - 1;
     luaL_Buffer line;
     lua_getfield(L, result, "message");
     lua_getfield(L, result, "failing");
-    lua_pushfstring(L, "%s -- %s", lua_tostring(L, result + 1), lua_tostring(L, -2));
+    lua_pushfstring(L, "print(%s.message) --> %s", lua_tostring(L, result + 1), lua_tostring(L, -2));
     const lua_Integer count = luaL_len(L, -2);
     luaL_buffinit(L, &line);
     for (lua_Integer i = 1; i <= count && i <= NAMED; i++) {
