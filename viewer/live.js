@@ -235,7 +235,7 @@ export function makeRun(app) {
             }
         }
         if (words && !anew && app.model.frames.length > 1) {
-            const [first, ...more] = /^print\(model:factor_of.*; blocks (.*)/.exec(words)?.[1].split(", ").map(Number) ?? [];
+            const [first, ...more] = /^model:factor_of.*; blocks (.*)/.exec(words)?.[1].split(", ").map(Number) ?? [];
             if (first) app.pick(first);
             for (const id of more) app.pickMore(id);
             say(words, bad);

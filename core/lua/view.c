@@ -236,7 +236,8 @@ static void push_verb_line(lua_State *L, tl_model *model, const tl_view_command 
                         any_hidden(model, command) ? ", hidden = \"any\"" : "", verb);
 }
 
-/* Pushes the line that does the command, which is not pause, go or step; raises when a block is not there. */
+/* Pushes the line that does the command, or an expression that gives its answer; not of pause, go or step. Raises when
+ * a block is not there. */
 static void push_line(lua_State *L, tl_model *model, const tl_view_command *command, const char *prefix)
 {
     for (size_t i = 0; i < command->block_count; i++)
@@ -267,18 +268,17 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
 
 /* ---------------------------------------------------------------- commands --------------- */
 
-/* Blocks that a finding names at most. */
+/* Limit: blocks that a finding names. */
 #define NAMED 256
 
-/* Makes of the line at the top of the stack, and of what it has given, below it, a line that prints what a search for a
- * factor of safety finds, and has found: its sentence, and the blocks that fail. */
+/* Adds to the line at the top of the stack what a search for a factor of safety has found, below it, as a comment. */
 static void add_finding(lua_State *L)
 {
     const int result = lua_gettop(L) - 1;
     luaL_Buffer line;
     lua_getfield(L, result, "message");
     lua_getfield(L, result, "failing");
-    lua_pushfstring(L, "print(%s.message) --> %s", lua_tostring(L, result + 1), lua_tostring(L, -2));
+    lua_pushfstring(L, "%s -- %s", lua_tostring(L, result + 1), lua_tostring(L, -2));
     const lua_Integer count = luaL_len(L, -2);
     luaL_buffinit(L, &line);
     for (lua_Integer i = 1; i <= count && i <= NAMED; i++) {

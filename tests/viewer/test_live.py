@@ -176,7 +176,7 @@ def test_safety(chrome, page):
         run.put(frames[0], live("waiting"))
         watch(chrome, run)
         for number, ids in enumerate(([90], [92, 88, 90]), 1):
-            line = f"print(model:factor_of_safety {{}}.message) --> factor of safety 1.13 (holds at 1.12, fails at 1.14): {len(ids)} blocks of 3 m3 slide; blocks {', '.join(map(str, ids))}"
+            line = f"model:factor_of_safety {{}} -- factor of safety 1.13 (holds at 1.12, fails at 1.14): {len(ids)} blocks of 3 m3 slide; blocks {', '.join(map(str, ids))}"
             run.put(frames[number], live("waiting", line=line))
             check(until(chrome, f"talus.app.picks().join() === '{','.join(map(str, ids))}'"), f"{chrome.run('talus.app.picks()')} are picked, and not {ids}")
             check(words(chrome) == line, f"the page says: {words(chrome)}")
