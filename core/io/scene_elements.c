@@ -106,12 +106,14 @@ static void list_numbers(const tl_model *m, numbers *list)
 {
     const struct tl_elements *e = m->elements;
     list->count = 0;
-    for (int whole = 0; whole < 2; whole++)
-        for (size_t row = 0; row < e->table.table.rows; row++) {
-            const bool first = row == 0 || e->table.set[row] != e->table.set[row - 1];
-            if (first && is_shown(e, row))
-                add_states(list, e->set[e->table.set[row]].kind, whole != 0);
-        }
+    for (int whole = 0; whole < 2; whole++) {
+        uint32_t last = UINT32_MAX; /* set whose states are in the list */
+        for (size_t row = 0; row < e->table.table.rows; row++)
+            if (e->table.set[row] != last && is_shown(e, row)) {
+                last = e->table.set[row];
+                add_states(list, e->set[last].kind, whole != 0);
+            }
+    }
 }
 
 void tl_scene_elements_head(const tl_model *m, tl_piece *text)

@@ -26,6 +26,8 @@ end
 model:element("spring", { from = at(1, 3, 0.5), to = at(1, 3, 3.5), stiffness = 1e6 })
 model:water("table", { dip = 20, dip_direction = 60, origin = at(3, 2, 2.2), joints = "steep", unit_weight = 1e4 })
 model:water("uniform", { pressure = 2e3, joints = "wide" })
+model:water("flow", { aperture = 2e-4, unit_weight = 1e4, joints = "roof", every = 50,
+    heads = { { inside = { min = at(-0.1, -1, 0), max = at(0.1, 5, 2) }, head = far[3] + 3 } }, drains = { { at(4, 1, 3), at(4, 1, 0.5), 0.05 } } })
 model:boundary { side = "zmax", quiet = true, p_velocity = 4000, s_velocity = 2300, density = 2600 }
 model:write_html(folder .. "/elements", { title = "Slab" })
 model:cycle(400)
@@ -56,7 +58,7 @@ for i, element in ipairs(all) do
     local nodes = {}
     for k, node in ipairs(element.nodes) do
         nodes[k] = { place = node.position, weight = node.weight, tension = element.kind == "bolt" and node.tension or nil,
-            pressure = element.kind == "water" and node.pressure or nil }
+            pressure = (element.kind == "water" or element.kind == "flow") and node.pressure or nil }
     end
     told[i] = { id = element.id, kind = element.kind, nodes = nodes, area = known(area[i]), axial = known(axial[i]),
         yielded = element.yielded and 1 or 0 }

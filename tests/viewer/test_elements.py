@@ -58,16 +58,20 @@ def near(a, b, scale):
 
 
 def test_lines(chrome, folder):
-    """Bars have the places, tensions and states that the program tells; quiet faces are not there."""
+    """Bars and drains have the places, tensions and states that the program tells; quiet faces and heads are not there."""
     show(chrome, folder / "elements.html")
     wanted, got = told(folder), drawn(chrome)
-    lines = {i for i, e in wanted.items() if e["kind"] in ("bolt", "spring")}
-    check({i for i, e in got.items() if not e["flags"] & FACE} == lines and len(lines) == 4, f"lines {sorted(got)} instead of {sorted(lines)}")
+    bars = {i for i, e in wanted.items() if e["kind"] in ("bolt", "spring")}
+    lines = bars | {i for i, e in wanted.items() if e["kind"] == "flow" and len(e["nodes"]) == 2 and e["nodes"][0]["weight"] > 0}
+    check(sum(e["kind"] == "flow" and len(e["nodes"]) == 2 for e in wanted.values()) == 2, "there are no head and drain")
+    check({i for i, e in got.items() if not e["flags"] & FACE} == lines and len(lines) == 5, f"lines {sorted(got)} instead of {sorted(lines)}")
     check(not any(e["kind"] == "quiet" for e in got.values()) and any(e["kind"] == "quiet" for e in wanted.values()), "quiet faces are shown")
     for i in lines:
         nodes, points = wanted[i]["nodes"], got[i]["points"]
         # places are in single precision from an origin within 10 m
         check(len(nodes) == len(points) and all(near(a, b, 10) for n, p in zip(nodes, points) for a, b in zip(n["place"], p)), f"element {i} is elsewhere")
+        if i not in bars:
+            continue
         most = max(abs(n.get("tension", 0)) for n in nodes)
         check(wanted[i]["kind"] == "spring" or all(near(n["tension"], t, most) for n, t in zip(nodes, got[i]["numbers"]["tension"])), f"element {i} has other tensions")
         check(near(got[i]["numbers"]["axial"][0], wanted[i]["axial"], abs(wanted[i]["axial"])), f"element {i} has another axial force")
@@ -76,10 +80,10 @@ def test_lines(chrome, folder):
 
 
 def test_walls(chrome, folder):
-    """Wet polygons have the areas of the program, and their pressures its forces and moments; nothing dry is drawn."""
+    """Wet polygons have the areas of the program, and their pressures its forces and, of water at rest, moments; nothing dry is drawn."""
     show(chrome, folder / "elements.html")
     wanted, got = told(folder), drawn(chrome)
-    wet = {i for i, e in wanted.items() if e["kind"] == "water" and max(n["pressure"] for n in e["nodes"]) > 0}
+    wet = {i for i, e in wanted.items() if e["kind"] in ("water", "flow") and len(e["nodes"]) > (2 if e["kind"] == "flow" else 1) and max(n["pressure"] for n in e["nodes"]) > 0}
     check({i for i, e in got.items() if e["flags"] & FACE} == wet and len(wet) > 4, f"walls {[i for i in got if got[i]['flags'] & FACE]} instead of {sorted(wet)}")
     for i in wet:
         nodes = wanted[i]["nodes"][:len(wanted[i]["nodes"]) // 2]
@@ -89,7 +93,7 @@ def test_walls(chrome, folder):
         # walls have moved by some 1e-4 m against each other since their polygons were found
         check(abs(area / wanted[i]["area"] - 1) < 1e-3, f"wall {i} has {area} m2 instead of {wanted[i]['area']}")
         check(abs(force / whole - 1) < 2e-3, f"wall {i} bears {force} N instead of {whole}")
-        for c in range(3):
+        for c in range(3 if wanted[i]["kind"] == "water" else 0):  # flow has its weights at the corners
             by = sum(n["pressure"] * n["weight"] * (n["place"][c] - corner[c]) for n in nodes)
             check(abs(moment[c] - by) < 2e-3 * whole * area ** 0.5, f"wall {i} has the moment {moment} N m, of which {c} should be {by}")
 
@@ -98,7 +102,7 @@ def test_colours(chrome, folder):
     """Bars are there at first look, walls when they are asked for; the highest number has the darkest colour; a click tells what an element is."""
     show(chrome, folder / "elements.html")
     titles, rods, sheets, ghosts = chrome.run("(a => [a.legends.map(l => l.title), a.gpu.arrows.count, a.gpu.sheets.solid, a.shown.ghosts])(talus.app)")
-    nodes = sum(len(e["nodes"]) - 1 for e in told(folder).values() if e["kind"] in ("bolt", "spring"))
+    nodes = sum(len(e["nodes"]) - 1 for e in told(folder).values() if e["kind"] in ("bolt", "spring")) + 1  # and a drain
     check("Tension, N" in titles and "Axial, N" in titles and rods == nodes and sheets == 0 and not ghosts, f"at first look there are {titles}, {rods} of {nodes} rods, {sheets} corners of walls")
     offered = chrome.run("[...document.querySelector('select[aria-label=\"elements\"]').options].map(o => o.value)")
     check(offered[:3] == ["", "none", "state"] and {"tension", "pressure", "axial", "slip"} <= set(offered) and "cut" not in offered and "shift_x" not in offered, f"colours {offered}")
@@ -111,7 +115,7 @@ def test_colours(chrome, folder):
         const names = a.gpu.names(a.sight(w, h), a.lookNow(), w, h, [0, 0, w, h]), k = names.findIndex(n => n >= 0xa0000000 && n < 0xc0000000 && !(a.frame.data.elements.flags[n - 0xa0000000] & 8));
         if (k < 0) return null; const x = (k % w + 0.5) * a.width / w, y = (h - 0.5 - Math.floor(k / w)) * a.height / h; a.pickAt(x, y, false);
         return [a.legends.map(l => l.title), document.getElementById('status').textContent]; })(talus.app)""")
-    check(words and "Elements: state" in words[0] and words[1].startswith("Element ") and ("bolt" in words[1] or "spring" in words[1]) and " N" in words[1], f"a click says {words}")
+    check(words and "Elements: state" in words[0] and words[1].startswith("Element ") and ("bolt" in words[1] or "spring" in words[1] or "flow" in words[1]) and (" N" in words[1] or "flow" in words[1]), f"a click says {words}")
     gone = chrome.run("(async a => { a.view.elements = 'none'; a.change('pose'); await a.drawn(); return [a.gpu.arrows.count, a.gpu.sheets.solid, a.shown.ghosts]; })(talus.app)")
     check(gone == [0, 0, False], f"with none there are {gone}")
 
