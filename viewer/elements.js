@@ -9,7 +9,7 @@ import {rowsOf} from "./zones.js";
 /** @typedef {import("./frames.js").Frame} Frame */
 
 const FACE = 8;     // flag of an element that is a polygon
-const WIDTH = 0.02;  // of a rod, as a share of half the size of the model
+const WIDTH = 0.02; // of a rod, as a share of half the size of the model
 const STATES = [
     {name: "sound", colour: [150, 170, 190]}, {name: "yielded", colour: [230, 159, 0]},
     {name: "broken", colour: [190, 40, 20]}, {name: "detached", colour: [120, 60, 140]}
