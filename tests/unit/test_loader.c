@@ -103,7 +103,7 @@ TEST(a_search_for_nothing_is_no_error)
 
 TEST(broken_plugins_are_refused_with_the_reason)
 {
-    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.14, this Talus has 1.14");
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.15, this Talus has 1.15");
     refused(bad_folder, "later_major", "it was built for plugin ABI 3.14, this Talus has 1.14: build it anew");
     refused(bad_folder, "later_minor",
             "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.14");
