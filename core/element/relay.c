@@ -3,9 +3,9 @@
  * Kinds with `lays_again` lie on what blocks have in common, such as walls of joints. They place again when blocks have
  * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
- * keeps the states and flags of the one that had its key; its nodes take those of the nearest old node on the same
- * block. Nodes of an element with a new key take those of the nearest old node of their call. States that are RESET are
- * those that `place` gives. Where nothing has moved all are the same to the bit. */
+ * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
+ * same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are RESET
+ * are those that `place` gives. Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -190,14 +190,15 @@ static passing passing_of(const tl_kind *kind)
     return p;
 }
 
-/* Gives an element what an old one with its key had. Blocks have moved since forces were last asked for: nodes are
- * given that motion for the step to come. */
+/* Gives an element what an old one with its key had, and its number. Blocks have moved since forces were last asked for:
+ * nodes are given that motion for the step to come. */
 static void inherit(tl_model *m, uint32_t row, uint32_t from)
 {
     struct tl_elements *e = m->elements;
     tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
     const passing pass = passing_of(e->set[t->set[row]].kind);
+    t->id[row] = t->id[from];
     t->flags[row] = t->flags[from] & ~(uint32_t)TL_ELEMENT_DETACHED;
     t->stored[row] = t->stored[from];
     for (uint32_t k = 0; k < t->state_columns; k++)
@@ -262,6 +263,58 @@ static bool inherit_all(tl_model *m, uint32_t first)
     return true;
 }
 
+/* ---------------------------------------------------------------- order ------------------ */
+
+/* A row, by the number of its element. */
+typedef struct numbered {
+    tl_id id;
+    uint32_t row;
+} numbered;
+
+static int compare_ids(const void *a, const void *b)
+{
+    const tl_id x = ((const numbered *)a)->id, y = ((const numbered *)b)->id;
+    return (x > y) - (x < y);
+}
+
+/* Room to sort the rows that there are: NULL when out of memory. */
+static numbered *room_to_sort(struct tl_elements *e)
+{
+    numbered *list = malloc((e->table.table.rows + 1) * sizeof *list);
+    if (list && tl_table_reserve(&e->table.table, 2 * e->table.table.rows) &&
+        tl_table_reserve(&e->nodes.table, 2 * e->nodes.table.rows))
+        return list;
+    free(list);
+    return NULL;
+}
+
+/* Puts elements, and their nodes, in the order of their numbers, behind the others, and then moves them down. */
+static void sort_rows(struct tl_elements *e, numbered *list)
+{
+    tl_element_table *t = &e->table;
+    const uint32_t rows = (uint32_t)t->table.rows, nodes = (uint32_t)e->nodes.table.rows;
+    uint32_t next = nodes;
+    for (uint32_t row = 0; row < rows; row++)
+        list[row] = (numbered){t->id[row], row};
+    if (rows > 1)
+        qsort(list, rows, sizeof *list, compare_ids);
+    tl_table_resize(&t->table, 2 * (size_t)rows); /* there is room */
+    tl_table_resize(&e->nodes.table, 2 * (size_t)nodes);
+    for (uint32_t i = 0; i < rows; i++) {
+        const uint32_t begin = t->node_begin[list[i].row];
+        tl_table_move(&t->table, rows + i, list[i].row);
+        t->node_begin[rows + i] = next - nodes;
+        for (uint32_t k = 0; k < t->node_count[rows + i]; k++, next++)
+            tl_table_move(&e->nodes.table, next, begin + k);
+    }
+    for (uint32_t i = 0; i < rows; i++)
+        tl_table_move(&t->table, i, rows + i);
+    for (uint32_t i = 0; i < nodes; i++)
+        tl_table_move(&e->nodes.table, i, nodes + i);
+    tl_table_resize(&t->table, rows);
+    tl_table_resize(&e->nodes.table, nodes);
+}
+
 /* ---------------------------------------------------------------- again ------------------ */
 
 /* Asks all sets that are placed again, the last one first. */
@@ -292,11 +345,13 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     tl_steady_let_go(m);
     for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
         status = tl_placing_commit(&of[k], (uint32_t)k);
-    if (status == TL_OK && !inherit_all(m, before))
+    numbered *list = status == TL_OK ? room_to_sort(e) : NULL;
+    if (status == TL_OK && !(list && inherit_all(m, before)))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         status = tl_elements_together(m, before, false);
     if (status != TL_OK) {
+        free(list);
         tl_table_resize(&e->table.table, before);
         tl_table_resize(&e->nodes.table, nodes);
         return status;
@@ -306,6 +361,8 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     for (size_t k = 0; k < e->set_count; k++)
         e->set[k].structure = m->structure;
     tl_elements_keep(e, keep, false);
+    sort_rows(e, list);
+    free(list);
     return TL_OK;
 }
 

@@ -4,6 +4,7 @@
  * found, when its number is divisible by what `every` says. */
 #include "element/together.h"
 
+#include "base/columns.h"
 #include "base/error.h"
 #include "base/inside.h"
 #include "element/carry.h"
@@ -34,19 +35,82 @@ bool tl_elements_together_due(const tl_model *m)
     return due;
 }
 
-/* Where nodes are, and where their elements begin. */
-static void fill(tl_model *m, uint32_t begin, uint32_t end, double *column[6], uint32_t *start)
+/* The elements of a set, one after the other: their rows may lie apart. */
+typedef struct gathered {
+    const uint32_t *row;
+    uint32_t count;
+    size_t nodes;
+    double *numbers;
+    uint32_t *start, *flags;
+    double *rest[3], *u[3], *normal[3], *weight, *state[TL_ELEMENT_COLUMNS], *whole[TL_ELEMENT_COLUMNS];
+} gathered;
+
+static void gathered_free(gathered *g)
+{
+    free(g->numbers);
+    free(g->start);
+    free(g->flags);
+}
+
+static bool gathered_begin(const struct tl_elements *e, const uint32_t *row, uint32_t count, gathered *g)
+{
+    const uint32_t states = e->nodes.state_columns, wholes = e->table.state_columns;
+    *g = (gathered){.row = row, .count = count};
+    for (uint32_t k = 0; k < count; k++)
+        g->nodes += e->table.node_count[row[k]];
+    g->numbers = malloc(((10 + (size_t)states) * g->nodes + (size_t)wholes * count + 1) * sizeof *g->numbers);
+    g->start = malloc((count + (size_t)1) * sizeof *g->start);
+    g->flags = malloc((count + (size_t)1) * sizeof *g->flags);
+    if (!g->numbers || !g->start || !g->flags)
+        return false;
+    double *next = g->numbers;
+    double **column[10] = {&g->rest[0], &g->rest[1],   &g->rest[2],   &g->u[0],      &g->u[1],
+                           &g->u[2],    &g->normal[0], &g->normal[1], &g->normal[2], &g->weight};
+    for (int k = 0; k < 10; k++, next += g->nodes)
+        *column[k] = next;
+    for (uint32_t k = 0; k < states; k++, next += g->nodes)
+        g->state[k] = next;
+    for (uint32_t k = 0; k < wholes; k++, next += count)
+        g->whole[k] = next;
+    return true;
+}
+
+/* Where nodes are, and what they and their elements have. */
+static void fill(tl_model *m, gathered *g)
 {
     const tl_element_table *t = &m->elements->table;
-    const uint32_t first = t->node_begin[begin], last = t->node_begin[end - 1] + t->node_count[end - 1];
-    for (uint32_t row = begin; row < end; row++)
-        start[row - begin] = t->node_begin[row] - first;
-    start[end - begin] = last - first;
-    for (uint32_t row = first; row < last; row++) {
-        const tl_vec3 u = tl_node_moved(m, row), n = tl_node_normal(m, row);
-        const double value[] = {u.x, u.y, u.z, n.x, n.y, n.z};
-        for (int k = 0; k < 6; k++)
-            column[k][row - first] = value[k];
+    const tl_node_table *n = &m->elements->nodes;
+    uint32_t to = 0;
+    for (uint32_t i = 0; i < g->count; i++) {
+        const uint32_t element = g->row[i], first = t->node_begin[element];
+        g->start[i] = to;
+        g->flags[i] = t->flags[element];
+        for (uint32_t k = 0; k < t->state_columns; k++)
+            g->whole[k][i] = t->state[k][element];
+        for (uint32_t row = first; row < first + t->node_count[element]; row++, to++) {
+            tl_columns_put(g->rest, to, tl_columns_get(n->rest, row));
+            tl_columns_put(g->u, to, tl_node_moved(m, row));
+            tl_columns_put(g->normal, to, tl_node_normal(m, row));
+            g->weight[to] = n->weight[row];
+            for (uint32_t k = 0; k < n->state_columns; k++)
+                g->state[k][to] = n->state[k][row];
+        }
+    }
+    g->start[g->count] = to;
+}
+
+/* Gives elements the states and flags that the kind has left. */
+static void give_back(struct tl_elements *e, const gathered *g)
+{
+    tl_element_table *t = &e->table;
+    for (uint32_t i = 0; i < g->count; i++) {
+        const uint32_t element = g->row[i], first = t->node_begin[element];
+        t->flags[element] = g->flags[i];
+        for (uint32_t k = 0; k < t->state_columns; k++)
+            t->state[k][element] = g->whole[k][i];
+        for (uint32_t row = first; row < first + t->node_count[element]; row++)
+            for (uint32_t k = 0; k < e->nodes.state_columns; k++)
+                e->nodes.state[k][row] = g->state[k][g->start[i] + row - first];
     }
 }
 
@@ -68,7 +132,7 @@ static uint32_t find_odd(const tl_element_batch *b, const tl_kind *kind)
     return b->count;
 }
 
-static tl_status call(tl_model *m, const tl_element_set *set, const tl_element_batch *batch, uint32_t begin)
+static tl_status call(tl_model *m, const tl_element_set *set, const tl_element_batch *batch, const uint32_t *row)
 {
     tl_report report = {.size = sizeof report};
     tl_enter(set->kind, "together");
@@ -81,47 +145,36 @@ static tl_status call(tl_model *m, const tl_element_set *set, const tl_element_b
     return odd == batch->count ? TL_OK
                                : tl_fail(&m->error, TL_E_NUMERIC,
                                          "element %u, '%s' of plugin '%s': together() gives a state that is not finite",
-                                         m->elements->table.id[begin + odd], set->kind->name, tl_plugin_id(set->kind));
+                                         m->elements->table.id[row[odd]], set->kind->name, tl_plugin_id(set->kind));
 }
 
-/* Asks the kind of the elements in rows that follow each other. */
-static tl_status ask(tl_model *m, uint32_t begin, uint32_t end)
+/* Asks the kind of a set, whose elements are in these rows. */
+static tl_status ask(tl_model *m, const tl_element_set *set, const uint32_t *row, uint32_t count)
 {
-    const struct tl_elements *e = m->elements;
-    const tl_element_table *t = &e->table;
-    const tl_node_table *n = &e->nodes;
-    const size_t first = t->node_begin[begin];
-    const size_t nodes = t->node_begin[end - 1] + (size_t)t->node_count[end - 1] - first;
-    double *own = malloc(6 * nodes * sizeof *own), *column[6], *state[TL_ELEMENT_COLUMNS], *whole[TL_ELEMENT_COLUMNS];
-    uint32_t *start = malloc((end - begin + (size_t)1) * sizeof *start);
-    tl_status status = own && start ? TL_OK : tl_fail_memory(&m->error);
+    gathered g;
+    tl_status status = gathered_begin(m->elements, row, count, &g) ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK) {
-        for (int k = 0; k < 6; k++)
-            column[k] = own + (size_t)k * nodes;
-        for (uint32_t k = 0; k < n->state_columns; k++)
-            state[k] = n->state[k] + first;
-        for (uint32_t k = 0; k < t->state_columns; k++)
-            whole[k] = t->state[k] + begin;
-        fill(m, begin, end, column, start);
+        fill(m, &g);
         tl_element_batch batch = {.size = sizeof batch,
-                                  .count = end - begin,
+                                  .count = count,
                                   .dt = tl_law_time(m, m->dt),
                                   .time = m->time,
                                   .origin = m->origin,
-                                  .start = start,
-                                  .weight = n->weight + first,
-                                  .state = state,
-                                  .element_state = whole,
-                                  .flags = t->flags + begin};
+                                  .start = g.start,
+                                  .weight = g.weight,
+                                  .state = g.state,
+                                  .element_state = g.whole,
+                                  .flags = g.flags};
         for (int k = 0; k < 3; k++) {
-            batch.rest[k] = n->rest[k] + first;
-            batch.u[k] = column[k];
-            batch.normal[k] = column[3 + k];
+            batch.rest[k] = g.rest[k];
+            batch.u[k] = g.u[k];
+            batch.normal[k] = g.normal[k];
         }
-        status = call(m, &e->set[t->set[begin]], &batch, begin);
+        status = call(m, set, &batch, row);
+        if (status == TL_OK)
+            give_back(m->elements, &g);
     }
-    free(own);
-    free(start);
+    gathered_free(&g);
     return status;
 }
 
@@ -129,13 +182,18 @@ tl_status tl_elements_together(tl_model *m, size_t first, bool due)
 {
     const struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
+    uint32_t *row = NULL;
     tl_status status = TL_OK;
-    for (size_t row = first, end; row < t->table.rows && status == TL_OK; row = end) {
-        const tl_element_set *set = &e->set[t->set[row]];
-        for (end = row + 1; end < t->table.rows && t->set[end] == t->set[row];)
-            end++;
-        if (acts(set) && (!due || is_due(m, set)))
-            status = ask(m, (uint32_t)row, (uint32_t)end);
+    for (size_t k = 0; k < e->set_count && status == TL_OK; k++) {
+        if (!acts(&e->set[k]) || (due && !is_due(m, &e->set[k])))
+            continue;
+        uint32_t count = 0;
+        row = row ? row : malloc((t->table.rows + 1) * sizeof *row);
+        for (size_t i = first; i < t->table.rows && row; i++)
+            if (t->set[i] == k)
+                row[count++] = (uint32_t)i;
+        status = !row ? tl_fail_memory(&m->error) : count > 0 ? ask(m, &e->set[k], row, count) : TL_OK;
     }
+    free(row);
     return status;
 }

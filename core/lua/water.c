@@ -51,7 +51,8 @@ static void push_parameters(lua_State *L, const char *source)
     lua_setfield(L, to, "source");
 }
 
-/* Asks the function at index `function` for the pressures at some places: a list of them is pushed. */
+/* Asks the function at index `function` for the pressures at some places: a list of them is pushed. The places are
+ * those of nodes to come, so the function may only read the model. */
 static double *ask_pressures(lua_State *L, tl_model *model, int function, const tl_args *args)
 {
     tl_vec3 *places;
@@ -65,7 +66,8 @@ static double *ask_pressures(lua_State *L, tl_model *model, int function, const 
         lua_pushvalue(L, function);
         for (int k = 0; k < 3; k++)
             lua_pushnumber(L, held[3 * i + (size_t)k]);
-        lua_call(L, 3, 1);
+        if (tl_lua_call_reading(L, lua_touserdata(L, 1), 3, 1) != LUA_OK)
+            lua_error(L);
         pressure[i] = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
         if (!(pressure[i] >= 0) || isinf(pressure[i]))
             tl_lua_fail_in(L, function, "water: pressure must give a number of at least 0, Pa: it gave %s",

@@ -155,6 +155,15 @@ static tl_status check(const tl_element_host *host, const params *p)
         return host->fail(host, TL_E_ARGUMENT, "a table needs level, or dip, dip_direction and origin");
     if (p->source == TABLE && !isnan(p->level) && dips)
         return host->fail(host, TL_E_ARGUMENT, "give a table level, or dip, dip_direction and origin, not both");
+    if (p->source != TABLE && (!isnan(p->level) || dips))
+        return host->fail(host, TL_E_ARGUMENT,
+                          "level, dip, dip_direction and origin are of a table: leave them out of source '%s'",
+                          sources[p->source]);
+    if (p->source != UNIFORM && !isnan(p->pressure))
+        return host->fail(host, TL_E_ARGUMENT, "pressure is of a uniform source: leave it out of source '%s'",
+                          sources[p->source]);
+    if (p->joints[0] == '\0')
+        return host->fail(host, TL_E_ARGUMENT, "joints = '' names none: name joints, or leave it out for all");
     if (p->source == UNIFORM && isnan(p->pressure))
         return host->fail(host, TL_E_ARGUMENT, "a uniform source needs pressure, Pa");
     return TL_OK;
