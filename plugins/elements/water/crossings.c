@@ -11,8 +11,8 @@
 /* Constant: ends of sides that are nearer than this share of the shortest side are one end, however wide the slack. */
 #define LEAST_PIECE 0.25
 
-/* Cost only: width of a cell of the grid over the mean length of sides, and how far cells are off whole numbers, in
- * which sides of regular rock would lie in two. */
+/* Cost only: width of a cell of the grid over the mean length of sides; and how far cells are off whole numbers. Sides
+ * of regular rock would lie in two cells there. */
 #define CELL 0.5
 #define OFF 0.3127
 
