@@ -3,8 +3,8 @@
  * Kinds with `lays_again` lie on what blocks have in common, such as walls of joints. They place again when blocks have
  * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
- * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
- * same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are
+ * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on
+ * the same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are
  * RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 

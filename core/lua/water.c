@@ -156,12 +156,10 @@ static const tl_lua_key keys[] = {
     {"residual", "number", "likewise: least aperture; 2e-5 when left out"},
     {"maximum", "number", "likewise: largest aperture that counts; 2e-3 when left out"},
     {"viscosity", "number", "likewise, Pa s; 1e-3 when left out"},
-    {"heads", "list of heads",
-     "likewise: tables {inside = {min = {x, y, z}, max = {x, y, z}}, head = number}: heads, m above z = 0, of the "
-     "edges of wet joints whose middle lies in a box"},
-    {"drains", "list of drains",
-     "likewise: {{x, y, z}, {x, y, z}, radius}: holes of a radius, m, in which the pressure is 0"},
-    {"steady", "true or false", "likewise: true, when left out: water is in balance; false: joints store water"},
+    {"heads", "list of {inside = {min = {x, y, z}, max = {x, y, z}}, head = number}",
+     "likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box"},
+    {"drains", "list of {{x, y, z}, {x, y, z}, radius}", "likewise: holes of a radius, m, in which the pressure is 0"},
+    {"steady", "true or false", "likewise: true, when left out, for water in balance; false: joints store water"},
     {"every", "number", "likewise: steps between two solutions of steady flow; 100 when left out"},
     {"bulk", "number", "likewise: bulk modulus of water that is stored, Pa; 2e9 when left out"},
     {"initial_head", "number", "likewise: head at the beginning where flow is not steady; without it pressure is 0, m"},
@@ -174,8 +172,7 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .usage =
          "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
          "{\"J1\"}})  or  model:water(\"field\", {pressure = function(x, y, z) return 9810 * z end})  or  "
-         "model:water(\"none\")  or  model:water(\"flow\", {aperture = 2e-4, heads = {{inside = {min = "
-         "{0, 0, 0}, max = {4, 4, 4}}, head = 20}}})",
+         "model:water(\"none\")  or  model:water(\"flow\", {aperture = 2e-4, heads = {{inside = BOX, head = 20}}})",
      .doc =
          "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
          "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "
@@ -188,12 +185,11 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .arguments = 2,
      .method = model_water},
     {.name = "flow",
-     .usage = "result = model:flow()",
+     .usage = "model:water(\"flow\", {aperture = 2e-4, steady = false}); result = model:flow()",
      .doc =
          "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
          "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "
-         "flow, head and closed; and closed, how many of them reach neither a head nor a drain. Lists are empty "
-         "where no water flows.",
+         "flow, head and closed; and closed, how many of them reach neither a head nor a drain.",
      .arguments = 0,
      .method = tl_lua_model_flow},
     {.name = NULL},

@@ -2033,9 +2033,9 @@ function Model:elements(options) end
 ---@field residual? number likewise: least aperture; 2e-5 when left out
 ---@field maximum? number likewise: largest aperture that counts; 2e-3 when left out
 ---@field viscosity? number likewise, Pa s; 1e-3 when left out
----@field heads? { inside: { min: talus.Vector, max: talus.Vector }, head: number }[] likewise: tables {inside = {min = {x, y, z}, max = {x, y, z}}, head = number}: heads, m above z = 0, of the edges of wet joints whose middle lies in a box
----@field drains? table[] likewise: {{x, y, z}, {x, y, z}, radius}: holes of a radius, m, in which the pressure is 0
----@field steady? boolean likewise: true, when left out: water is in balance; false: joints store water
+---@field heads? { inside: { min: talus.Vector, max: talus.Vector }, min: talus.Vector, max: talus.Vector, head: number }[] likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box
+---@field drains? (talus.Vector|number)[][] likewise: holes of a radius, m, in which the pressure is 0
+---@field steady? boolean likewise: true, when left out, for water in balance; false: joints store water
 ---@field every? number likewise: steps between two solutions of steady flow; 100 when left out
 ---@field bulk? number likewise: bulk modulus of water that is stored, Pa; 2e9 when left out
 ---@field initial_head? number likewise: head at the beginning where flow is not steady; without it pressure is 0, m
@@ -2043,7 +2043,7 @@ function Model:elements(options) end
 
 --- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. Of "flow" pressures are found by the cubic law, between heads and drains, with apertures that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
 ---
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")  or  model:water("flow", {aperture = 2e-4, heads = {{inside = {min = {0, 0, 0}, max = {4, 4, 4}}, head = 20}}})
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")  or  model:water("flow", {aperture = 2e-4, heads = {{inside = BOX, head = 20}}})
 ---@param name string
 ---@param options? talus.WaterOptions
 ---@return talus.Elements
@@ -2053,9 +2053,25 @@ function Model:elements(options) end
 ---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 function Model:water(name, options) end
 
---- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain. Lists are empty where no water flows. element 'flow' Water that flows in joints: model:water("flow").
+---@class (exact) talus.FlowOptions
+---@field aperture number m, in (0, 1]: Hydraulic aperture of walls that just touch.
+---@field residual? number m, in (0, 1], default 2e-05: Least aperture, of a joint that is pressed.
+---@field maximum? number m, in (0, 1], default 0.002: Largest aperture that counts.
+---@field viscosity? number Pa s, in (0, 1e+50], default 0.001: Of the water.
+---@field unit_weight? number N/m3, in (0, 1e+50], default 9810: Of the water.
+---@field bulk? number Pa, in (0, 1e+50], default 2000000000: Bulk modulus of the water, where flow is not steady.
+---@field initial_head? number m: Head at the beginning where flow is not steady; without it the pressure begins at 0.
+---@field drain_gap? number m, in (0, 1e+50], default 0.05: Mean opening beyond which a joint is dry.
+---@field apertures? string Other apertures, of joints, sets or planes: "A=1e-4,B:2=3e-4", m; the last that fits counts.
+---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
+---@field heads? talus.Vector[] m: Three points a head: least and largest corner of a box, and {head, 0, 0}.
+---@field drains? talus.Vector[] m: Three points a drain: both ends, and {radius, 0, 0}.
+---@field every? integer in [1, 1e+09], default 100: Steps between two solutions of steady flow.
+---@field steady? boolean default true: Whether water is in balance, or also stored, with every = 1.
+
+--- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain. element 'flow' Water that flows in joints: model:water("flow").
 ---
----     result = model:flow()
+---     model:water("flow", {aperture = 2e-4, steady = false}); result = model:flow()
 ---@return { closed: integer, drains: table, heads: table, joints: talus.Elements }
 function Model:flow() end
 
@@ -2067,6 +2083,7 @@ function Model:flow() end
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field workers? integer in [1, 256], default 1: processes that make trials at once; what is found is the same for any number
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field elements? boolean default false: whether the strengths of elements, such as bolts, are divided, too
 ---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
 ---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
 
@@ -2077,7 +2094,7 @@ function Model:flow() end
 ---@field failing talus.Blocks selection of the blocks that go together at `upper`: those within 0.3 of the fastest
 ---@field volume number? of these, m3, and where they go, a unit vector; without any direction is nil
 ---@field direction talus.Vector? of these, m3, and where they go, a unit vector; without any direction is nil
----@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "holds" without any
+---@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "yields" (a deformable block is strained on and on); "holds" without any
 ---@field keyblock { block: talus.Block, factor: number }? {factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is none, or laws have no friction and cohesion or name blocks
 ---@field trials { F: number, cycles: integer, holds: boolean, undecided: boolean, why: string }[] each a table: F, holds, undecided, cycles, why; in the order in which they were made
 ---@field small talus.Blocks selection of the blocks below least_volume that failed before at `upper`, and were deleted in that copy
@@ -2101,6 +2118,7 @@ function Model:factor_of_safety(options) end
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field workers? integer in [1, 256], default 1: processes that make trials at once; what is found is the same for any number
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field elements? boolean default false: whether the strengths of elements, such as bolts, are divided, too
 ---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
 ---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
 
