@@ -265,8 +265,6 @@ int tl_lua_model_flow(lua_State *L, tl_model *model)
     const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
     all->names = ids;
     tl_lua_ok(L, model, status);
-    if (all->count == 0)
-        tl_lua_fail(L, "flow: no water flows here: begin with model:water(\"flow\", {aperture = 2e-4, heads = ...})");
     lua_newtable(L); /* heads */
     lua_newtable(L); /* drains */
     size_t joints = 0;

@@ -11,6 +11,11 @@
 /* Constant: ends of sides that are nearer than this share of the shortest side are one end, however wide the slack. */
 #define LEAST_PIECE 0.25
 
+/* Cost only: width of a cell of the grid over the mean length of sides; and how far cells are off whole numbers. Sides
+ * of regular rock would lie in two cells there. */
+#define CELL 0.5
+#define OFF 0.3127
+
 /* All sides of the polygons. */
 typedef struct sides {
     const flow_polygons *of;
@@ -106,8 +111,9 @@ static bool enter(const sides *s, uint32_t k, double h, entries *list)
 {
     const double slack = s->of->slack[s->polygon[k]];
     const tl_vec3 grow = tl_v3(slack, slack, slack), a = begin_of(s, k), b = end_of(s, k);
-    const tl_vec3 low = tl_v3_scale(1 / h, tl_v3_sub(tl_v3_min(a, b), grow));
-    const tl_vec3 high = tl_v3_scale(1 / h, tl_v3_add(tl_v3_max(a, b), grow));
+    const tl_vec3 off = tl_v3(OFF, OFF, OFF);
+    const tl_vec3 low = tl_v3_add(off, tl_v3_scale(1 / h, tl_v3_sub(tl_v3_min(a, b), grow)));
+    const tl_vec3 high = tl_v3_add(off, tl_v3_scale(1 / h, tl_v3_add(tl_v3_max(a, b), grow)));
     for (double x = floor(low.x); x <= high.x; x++)
         for (double y = floor(low.y); y <= high.y; y++)
             for (double z = floor(low.z); z <= high.z; z++) {
@@ -138,7 +144,7 @@ static bool find_lines(sides *s)
         sum += length_of(s, k);
         most = fmax(most, s->of->slack[s->polygon[k]]);
     }
-    const double h = fmax(2 * sum / (double)s->count, 8 * most);
+    const double h = fmax(CELL * sum / (double)s->count, 4 * most);
     for (uint32_t k = 0; k < s->count && enough; k++)
         enough = enter(s, k, h, &list);
     if (enough)
