@@ -167,22 +167,79 @@ static void inherit(tl_model *m, uint32_t row, uint32_t from)
     }
 }
 
-/* The nodes of an element that has no older one get states from the nearest node of its set before `first`. It may be
- * on any block: parts of blocks that were cut have other names. */
-static void inherit_near(struct tl_elements *e, uint32_t row, uint32_t first)
+/* An old node, by the set of its element and a coordinate. */
+typedef struct old_node {
+    uint32_t set, node;
+    double x;
+} old_node;
+
+static int compare_nodes(const void *a, const void *b)
+{
+    const old_node *p = a, *q = b;
+    if (p->set != q->set)
+        return p->set < q->set ? -1 : 1;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return (p->node > q->node) - (p->node < q->node);
+}
+
+/* Old nodes, of elements before some row, in the order of compare_nodes. */
+typedef struct old_nodes {
+    old_node *at;
+    size_t count;
+} old_nodes;
+
+static bool list_old_nodes(const struct tl_elements *e, uint32_t first, old_nodes *list)
+{
+    const tl_element_table *t = &e->table;
+    const size_t nodes = first ? t->node_begin[first - 1] + t->node_count[first - 1] : 0;
+    list->at = malloc((nodes + 1) * sizeof *list->at);
+    for (uint32_t row = 0; row < first && list->at; row++)
+        for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++)
+            list->at[list->count++] = (old_node){t->set[row], k, tl_node_place(&e->nodes, k).x};
+    if (list->count > 1)
+        qsort(list->at, list->count, sizeof *list->at, compare_nodes);
+    return list->at != NULL;
+}
+
+/* The one of a set that is nearest to node k, the first of several; TL_NO_ROW: the set has none. Those whose x is
+ * farther off than the nearest so far are not looked at. */
+static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *list, uint32_t set, uint32_t k)
+{
+    const tl_vec3 place = tl_node_place(&e->nodes, k);
+    const old_node sought = {set, 0, place.x};
+    size_t low = 0, high = list->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_nodes(&list->at[middle], &sought) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    uint32_t best = TL_NO_ROW;
+    double least = INFINITY;
+    for (int way = -1; way <= 1; way += 2)
+        for (size_t i = way > 0 ? low : low - 1; i < list->count && list->at[i].set == set; i += (size_t)way) {
+            const old_node *of = &list->at[i];
+            if ((of->x - place.x) * (of->x - place.x) > least)
+                break;
+            const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(&e->nodes, of->node), place));
+            if (far < least || (far == least && of->node < best)) {
+                least = far;
+                best = of->node;
+            }
+        }
+    return best;
+}
+
+/* The nodes of an element that has no older one get states from the nearest old node of its set. It may be on any
+ * block: parts of blocks that were cut have other names. */
+static void inherit_near(struct tl_elements *e, const old_nodes *list, uint32_t row)
 {
     const tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
-        uint32_t best = TL_NO_ROW;
-        double least = INFINITY;
-        for (uint32_t old = 0; old < first; old++)
-            for (uint32_t i = t->node_begin[old];
-                 t->set[old] == t->set[row] && i < t->node_begin[old] + t->node_count[old]; i++) {
-                const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(n, i), tl_node_place(n, k)));
-                best = far < least ? i : best;
-                least = fmin(least, far);
-            }
+        const uint32_t best = nearest_of_set(e, list, t->set[row], k);
         for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++)
             n->state[c][k] = n->state[c][best];
     }
@@ -194,8 +251,11 @@ static bool inherit_all(tl_model *m, uint32_t first)
     struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     old_one *list = malloc((first + (size_t)1) * sizeof *list);
-    if (!list)
+    old_nodes near = {NULL, 0};
+    if (!list || !list_old_nodes(e, first, &near)) {
+        free(list);
         return false;
+    }
     for (uint32_t row = 0; row < first; row++)
         list[row] = (old_one){t->set[row], row, t->key[row]};
     if (first > 1)
@@ -206,8 +266,9 @@ static bool inherit_all(tl_model *m, uint32_t first)
         if (found)
             inherit(m, row, found->row);
         else
-            inherit_near(e, row, first);
+            inherit_near(e, &near, row);
     }
+    free(near.at);
     free(list);
     return true;
 }
