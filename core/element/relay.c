@@ -4,8 +4,8 @@
  * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
  * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
- * same block. Nodes of an element with a new key take those of the nearest old node of their call. Where nothing has
- * moved all are the same to the bit. */
+ * same block. An element with a new key takes those of the nearest old one of its call, between three nodes linearly.
+ * Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -169,7 +169,7 @@ static void inherit(tl_model *m, uint32_t row, uint32_t from)
 
 /* An old node, by the set of its element and a coordinate. */
 typedef struct old_node {
-    uint32_t set, node;
+    uint32_t set, node, row;
     double x;
 } old_node;
 
@@ -196,18 +196,19 @@ static bool list_old_nodes(const struct tl_elements *e, uint32_t first, old_node
     list->at = malloc((nodes + 1) * sizeof *list->at);
     for (uint32_t row = 0; row < first && list->at; row++)
         for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++)
-            list->at[list->count++] = (old_node){t->set[row], k, tl_node_place(&e->nodes, k).x};
+            list->at[list->count++] = (old_node){t->set[row], k, row, tl_node_place(&e->nodes, k).x};
     if (list->count > 1)
         qsort(list->at, list->count, sizeof *list->at, compare_nodes);
     return list->at != NULL;
 }
 
-/* The one of a set that is nearest to node k, the first of several; TL_NO_ROW: the set has none. Those whose x is
- * farther off than the nearest so far are not looked at. */
-static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *list, uint32_t set, uint32_t k)
+/* The one of a set that is nearest to node k, the first of several, and the row of its element; TL_NO_ROW: the set has
+ * none. Those whose x is farther off than the nearest so far are not looked at. */
+static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *list, uint32_t set, uint32_t k,
+                               uint32_t *row)
 {
     const tl_vec3 place = tl_node_place(&e->nodes, k);
-    const old_node sought = {set, 0, place.x};
+    const old_node sought = {set, 0, 0, place.x};
     size_t low = 0, high = list->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
@@ -217,6 +218,7 @@ static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *lis
             high = middle;
     }
     uint32_t best = TL_NO_ROW;
+    *row = TL_NO_ROW;
     double least = INFINITY;
     for (int way = -1; way <= 1; way += 2)
         for (size_t i = way > 0 ? low : low - 1; i < list->count && list->at[i].set == set; i += (size_t)way) {
@@ -227,21 +229,71 @@ static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *lis
             if (far < least || (far == least && of->node < best)) {
                 least = far;
                 best = of->node;
+                *row = of->row;
             }
         }
     return best;
 }
 
-/* The nodes of an element that has no older one get states from the nearest old node of its set. It may be on any
- * block: parts of blocks that were cut have other names. */
-static void inherit_near(struct tl_elements *e, const old_nodes *list, uint32_t row)
+/* Tolerance: how far off the plane of three old nodes a new one lies at most that takes its states from all three, over
+ * their distance. */
+#define IN_PLANE 1e-3
+
+/* Three nodes, and the parts of each by which a state that is linear between them is found at a place. */
+typedef struct between {
+    uint32_t node[3];
+    double part[3];
+} between;
+
+/* The three nodes that an old element has on the wall of one of them; false: it has more or fewer, they lie in a line,
+ * or the place is off their plane. */
+static bool find_between(const tl_model *m, uint32_t row, uint32_t one, uint32_t k, between *of)
 {
+    const struct tl_elements *e = m->elements;
+    const tl_node_table *n = &e->nodes;
+    const tl_vec3 outward = tl_node_normal(m, one);
+    uint32_t count = 0;
+    for (uint32_t i = e->table.node_begin[row]; i < e->table.node_begin[row] + e->table.node_count[row]; i++)
+        if (tl_v3_dot(tl_node_normal(m, i), outward) > 0) {
+            if (count < 3)
+                of->node[count] = i;
+            count++;
+        }
+    if (count != 3)
+        return false;
+    const tl_vec3 from = tl_node_place(n, of->node[0]);
+    const tl_vec3 a = tl_v3_sub(tl_node_place(n, of->node[1]), from),
+                  b = tl_v3_sub(tl_node_place(n, of->node[2]), from);
+    const tl_vec3 d = tl_v3_sub(tl_node_place(n, k), from), normal = tl_v3_cross(a, b);
+    const double area2 = tl_v3_norm2(normal), size2 = fmax(tl_v3_norm2(a), tl_v3_norm2(b));
+    const double off = tl_v3_dot(d, normal);
+    if (!(area2 > IN_PLANE * IN_PLANE * size2 * size2) || off * off > IN_PLANE * IN_PLANE * size2 * area2)
+        return false;
+    of->part[1] = tl_v3_dot(tl_v3_cross(d, b), normal) / area2;
+    of->part[2] = tl_v3_dot(tl_v3_cross(a, d), normal) / area2;
+    of->part[0] = 1 - of->part[1] - of->part[2];
+    return true;
+}
+
+/* The nodes of an element that has no older one get states from the old element of its set that has the nearest node.
+ * It may be on any blocks: parts of blocks that were cut have other names. In the plane of three nodes states go on
+ * linearly. So the parts of a wall are pressed as the whole was. */
+static void inherit_near(tl_model *m, const old_nodes *list, uint32_t row)
+{
+    struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
-        const uint32_t best = nearest_of_set(e, list, t->set[row], k);
-        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++)
-            n->state[c][k] = n->state[c][best];
+        uint32_t of;
+        const uint32_t best = nearest_of_set(e, list, t->set[row], k, &of);
+        between three;
+        const bool linear = best != TL_NO_ROW && find_between(m, of, best, k, &three);
+        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++) {
+            double *state = n->state[c];
+            state[k] = linear ? three.part[0] * state[three.node[0]] + three.part[1] * state[three.node[1]] +
+                                    three.part[2] * state[three.node[2]]
+                              : state[best];
+        }
     }
 }
 
@@ -266,7 +318,7 @@ static bool inherit_all(tl_model *m, uint32_t first)
         if (found)
             inherit(m, row, found->row);
         else
-            inherit_near(e, &near, row);
+            inherit_near(m, &near, row);
     }
     free(near.at);
     free(list);

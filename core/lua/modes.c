@@ -60,7 +60,7 @@ static int model_modes(lua_State *L, tl_model *model)
 
 const tl_lua_topic tl_lua_modes_topics[] = {
     {.name = "modes",
-     .usage = "modes = model:modes{count = 6}",
+     .usage = "modes = model:modes{count = \"COUNT\"}",
      .function = "modes",
      .title = "What it gives: a list",
      .verbs = modes_results,
