@@ -7,6 +7,7 @@
 #include "element/relay.h"
 #include "element/set.h"
 #include "element/steady.h"
+#include "element/together.h"
 #include "model/joints.h"
 #include "model/rows.h"
 #include "plugin/loader.h"
@@ -111,8 +112,12 @@ static tl_status commit(making *k, tl_id **ids, size_t *made)
     const uint32_t first = (uint32_t)e->set_count;
     e->set_count += k->count;
     tl_steady_let_go(m);
-    const tl_status status = tl_placing_commit(&k->placing, first);
+    tl_status status = tl_placing_commit(&k->placing, first);
+    if (status == TL_OK)
+        status = tl_elements_together(m, before, false);
     if (status != TL_OK) {
+        tl_table_resize(&e->table.table, before);
+        tl_table_resize(&e->nodes.table, nodes);
         e->set_count -= k->count;
         free(list);
         return status;
@@ -201,6 +206,30 @@ tl_status tl_model_element_places(tl_model *m, const char *kind, const tl_args *
     return status;
 }
 
+tl_status tl_model_element_middles(tl_model *m, const char *kind, const tl_args *args, size_t count, tl_vec3 **places,
+                                   size_t *elements)
+{
+    making k = {.m = m};
+    *places = NULL;
+    *elements = 0;
+    tl_placing_begin(&k.placing, m, find_faces);
+    tl_status status = ask(&k, kind, args, count, NULL);
+    if (status == TL_OK) {
+        *places = malloc((k.placing.placed_count + 1) * sizeof **places);
+        status = *places ? TL_OK : tl_fail_memory(&m->error);
+    }
+    for (size_t i = 0; status == TL_OK && i < k.placing.placed_count; i++) {
+        const tl_placed *one = &k.placing.placed[i];
+        tl_vec3 sum = {0, 0, 0};
+        for (size_t n = 0; n < one->node_count; n++)
+            sum = tl_v3_add(sum, k.placing.node[one->node + n].place);
+        (*places)[i] = tl_v3_scale(1.0 / one->node_count, sum);
+    }
+    *elements = status == TL_OK ? k.placing.placed_count : 0;
+    end(&k);
+    return status;
+}
+
 /* ---------------------------------------------------------------- changing --------------- */
 
 tl_status tl_element_put(tl_model *m, tl_id element, size_t index, const char *name, double value)
@@ -216,6 +245,19 @@ tl_status tl_element_put(tl_model *m, tl_id element, size_t index, const char *n
     *at = value;
     changed(m);
     return TL_OK;
+}
+
+tl_status tl_elements_renew(tl_model *m)
+{
+    tl_status status = tl_model_may_set(m, "change elements");
+    if (status != TL_OK || !tl_model_has_elements(m))
+        return status;
+    tl_rows_tidy(m);
+    tl_elements_follow(m);
+    status = tl_elements_together(m, 0, false);
+    if (status == TL_OK)
+        changed(m);
+    return status;
 }
 
 /* Whether all that is given may be set after placing. */

@@ -146,7 +146,8 @@ static bool list_chunks(struct tl_elements *e)
         const bool steady = e->carried_count == 0 && tl_element_ops_of(&e->set[t->set[row]])->steady;
         e->any_steady = e->any_steady || steady;
         e->all_steady = e->all_steady && steady;
-        e->chunk[e->chunk_count++] = (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end, steady};
+        e->chunk[e->chunk_count++] =
+            (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end, steady, 0, TL_NO_ROW};
     }
     return true;
 }

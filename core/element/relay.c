@@ -5,7 +5,7 @@
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
  * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
  * same block. An element with a new key takes those of the nearest old one of its call, between three nodes linearly.
- * Where nothing has moved all are the same to the bit. */
+ * States that are RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -14,6 +14,8 @@
 #include "element/life.h"
 #include "element/place.h"
 #include "element/steady.h"
+#include "element/together.h"
+#include "plugin/loader.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,14 +78,17 @@ static bool is_taken(const keys *k, uint64_t key)
     return key && k->count && bsearch(&key, k->at, k->count, sizeof key, compare_keys);
 }
 
-/* Takes the keys of what has been placed, and leaves out what has a key that was taken before. */
+/* Takes the keys of what has been placed, and leaves out what has a key that was taken before: where all keys of a call
+ * were, what has none, too. */
 static bool take_keys(keys *k, tl_placing *p)
 {
-    size_t kept = 0;
+    size_t kept = 0, keyed = 0;
     for (size_t i = 0; i < p->placed_count; i++)
-        if (!is_taken(k, p->placed[i].key))
+        if (!is_taken(k, p->placed[i].key)) {
+            keyed += p->placed[i].key != 0;
             p->placed[kept++] = p->placed[i];
-    p->placed_count = kept;
+        }
+    p->placed_count = kept = keyed == 0 && kept < p->placed_count ? 0 : kept;
     if (!tl_grow(&k->at, &k->capacity, k->count + kept + 1, sizeof *k->at))
         return false;
     for (size_t i = 0; i < kept; i++)
@@ -92,10 +97,24 @@ static bool take_keys(keys *k, tl_placing *p)
     return true;
 }
 
+/* Elements without a key go, too, where all of their call that had one have gone: `number` of a set is scratch. */
+static void leave_rest(struct tl_elements *e, size_t first, unsigned char *keep)
+{
+    const tl_element_table *t = &e->table;
+    for (size_t k = 0; k < e->set_count; k++)
+        e->set[k].number = 0;
+    for (size_t row = 0; row < first; row++) /* 1: some have gone; 2: some stay */
+        e->set[t->set[row]].number |= !keep[row] ? 1 : t->key[row] ? 2 : 0;
+    for (size_t row = 0; row < first; row++)
+        if (e->set[t->set[row]].number == 1)
+            keep[row] = 0;
+}
+
 bool tl_elements_give_way(struct tl_elements *e, size_t first)
 {
     const tl_element_table *t = &e->table;
     const size_t rows = t->table.rows;
+    const char *plugin = tl_plugin_id(e->set[t->set[first]].kind);
     keys taken = {0};
     unsigned char *keep = malloc(rows + 1);
     const bool enough = keep && tl_grow(&taken.at, &taken.capacity, rows - first + 1, sizeof *taken.at);
@@ -104,8 +123,10 @@ bool tl_elements_give_way(struct tl_elements *e, size_t first)
     if (enough && taken.count > 1)
         qsort(taken.at, taken.count, sizeof *taken.at, compare_keys);
     for (size_t row = 0; row < rows && enough; row++)
-        keep[row] =
-            row >= first || e->set[t->set[row]].kind != e->set[t->set[first]].kind || !is_taken(&taken, t->key[row]);
+        keep[row] = row >= first || !tl_element_ops_of(&e->set[t->set[row]])->lays_again ||
+                    strcmp(tl_plugin_id(e->set[t->set[row]].kind), plugin) != 0 || !is_taken(&taken, t->key[row]);
+    if (enough)
+        leave_rest(e, first, keep);
     if (enough)
         tl_elements_keep(e, keep, false);
     free(taken.at);
@@ -144,6 +165,31 @@ static uint32_t nearest_node(const tl_node_table *n, uint32_t row, uint32_t begi
     return best;
 }
 
+/* Whether column `column` of the states of a kind, of nodes or of the whole, passes to elements that are placed
+ * again. */
+static bool passes(const tl_kind *kind, uint32_t column, bool whole)
+{
+    for (uint32_t k = 0; k < kind->state_count; k++)
+        if ((kind->states[k].kind == TL_STATE_WHOLE) == whole && column-- == 0)
+            return kind->states[k].transfer != TL_TRANSFER_RESET;
+    return false; /* the kind has fewer */
+}
+
+/* Which columns pass. */
+typedef struct passing {
+    bool node[TL_ELEMENT_COLUMNS], whole[TL_ELEMENT_COLUMNS];
+} passing;
+
+static passing passing_of(const tl_kind *kind)
+{
+    passing p;
+    for (uint32_t k = 0; k < TL_ELEMENT_COLUMNS; k++) {
+        p.node[k] = passes(kind, k, false);
+        p.whole[k] = passes(kind, k, true);
+    }
+    return p;
+}
+
 /* Gives an element what an old one with its key had, and its number. Blocks have moved since forces were last asked
  * for: nodes are given that motion for the step to come. */
 static void inherit(tl_model *m, uint32_t row, uint32_t from)
@@ -151,15 +197,18 @@ static void inherit(tl_model *m, uint32_t row, uint32_t from)
     struct tl_elements *e = m->elements;
     tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
+    const passing pass = passing_of(e->set[t->set[row]].kind);
     t->id[row] = t->id[from];
     t->flags[row] = t->flags[from] & ~(uint32_t)TL_ELEMENT_DETACHED;
     t->stored[row] = t->stored[from];
     for (uint32_t k = 0; k < t->state_columns; k++)
-        t->state[k][row] = t->state[k][from];
+        if (pass.whole[k])
+            t->state[k][row] = t->state[k][from];
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
         const uint32_t old = nearest_node(n, k, t->node_begin[from], t->node_begin[from] + t->node_count[from]);
         for (uint32_t c = 0; old != TL_NO_ROW && c < n->state_columns; c++)
-            n->state[c][k] = n->state[c][old];
+            if (pass.node[c])
+                n->state[c][k] = n->state[c][old];
         for (int c = 0; old != TL_NO_ROW && c < 3; c++)
             n->force[c][k] = n->weight[old] > 0 ? n->force[c][old] * (n->weight[k] / n->weight[old]) : 0;
         if (old != TL_NO_ROW)
@@ -239,6 +288,10 @@ static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *lis
  * their distance. */
 #define IN_PLANE 1e-3
 
+/* Limit: how far off 1/2 parts of three nodes are at a place that takes its states from them. On a triangle whose
+ * pressure three inner nodes integrate they are so by 1.5. */
+#define FARTHEST_PART 1.6
+
 /* Three nodes, and the parts of each by which a state that is linear between them is found at a place. */
 typedef struct between {
     uint32_t node[3];
@@ -272,7 +325,7 @@ static bool find_between(const tl_model *m, uint32_t row, uint32_t one, uint32_t
     of->part[1] = tl_v3_dot(tl_v3_cross(d, b), normal) / area2;
     of->part[2] = tl_v3_dot(tl_v3_cross(a, d), normal) / area2;
     of->part[0] = 1 - of->part[1] - of->part[2];
-    return true;
+    return fmax(fabs(of->part[0] - 0.5), fmax(fabs(of->part[1] - 0.5), fabs(of->part[2] - 0.5))) < FARTHEST_PART;
 }
 
 /* The nodes of an element that has no older one get states from the old element of its set that has the nearest node.
@@ -283,6 +336,7 @@ static void inherit_near(tl_model *m, const old_nodes *list, uint32_t row)
     struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
+    const passing pass = passing_of(e->set[t->set[row]].kind);
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
         uint32_t of;
         const uint32_t best = nearest_of_set(e, list, t->set[row], k, &of);
@@ -290,6 +344,8 @@ static void inherit_near(tl_model *m, const old_nodes *list, uint32_t row)
         const bool linear = best != TL_NO_ROW && find_between(m, of, best, k, &three);
         for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++) {
             double *state = n->state[c];
+            if (!pass.node[c])
+                continue;
             state[k] = linear ? three.part[0] * state[three.node[0]] + three.part[1] * state[three.node[1]] +
                                     three.part[2] * state[three.node[2]]
                               : state[best];
@@ -410,6 +466,8 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     numbered *list = status == TL_OK ? room_to_sort(e) : NULL;
     if (status == TL_OK && !(list && inherit_all(m, before)))
         status = tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = tl_elements_together(m, before, false);
     if (status != TL_OK) {
         free(list);
         tl_table_resize(&e->table.table, before);

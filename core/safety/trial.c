@@ -4,15 +4,18 @@
  * slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
  * (cycle/relax.c) or something moves on.
  *
- * Two scales come from the model itself: u, how far its joints settle under what they bear, and N, the steps in which
- * the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its weight, so what
- * moves then slips. What is held by friction slips for a while and is slower from look to look. What is not held
- * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
- * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
+ * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
+ * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
+ * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What is
+ * not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter,
+ * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may. What elements
+ * hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force
+ * would bear what drives it after CAUGHT of its radius.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
- * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is made again
- * with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
+ * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
+ * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
+ * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
  * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
@@ -27,6 +30,7 @@
 #include "base/number.h"
 #include "base/strength.h"
 #include "cycle/cycle_data.h"
+#include "cycle/element_forces.h"
 #include "cycle/failing.h"
 #include "cycle/joint_law.h"
 #include "cycle/meshes.h"
@@ -62,6 +66,8 @@
 #define STIFFEST 1000.0
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
+/* Tolerance: way over the radius of a body within which elements that tighten are to stop it. */
+#define CAUGHT 0.1
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
@@ -102,6 +108,8 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
     tl_status status = tl_joints_weaken(copy, t->asked, t->which, factor);
     if (status == TL_OK && t->options.solids)
         status = tl_solids_weaken(copy, t->asked, factor);
+    if (status == TL_OK && t->options.elements)
+        status = tl_elements_weaken(copy, t->asked, factor);
     if (status == TL_OK && t->stiffness > 1)
         status = tl_joints_stiffen(copy, t->stiffness);
     return told(t, copy, status);
@@ -207,6 +215,7 @@ static tl_status choose_laws(tl_trials *t)
     }
     for (size_t k = 0; o->solids && m->zones && k < m->zones->solid_count; k++)
         some = some || tl_kind_has_strength(m->zones->solid[k].of.kind);
+    some = some || (o->elements && tl_elements_have_strength(m));
     if (status == TL_OK && !some)
         return say_unmarked(t);
     for (size_t i = 0; i < m->joint_law_count; i++)
@@ -300,14 +309,18 @@ typedef struct look {
     tl_quat turned;      /* when it began */
     double way;          /* between the last two looks, m */
     int32_t grows;       /* looks in a row in which it did not become slower */
+    tl_vec3 pulled;      /* force of elements at the last look, N */
+    tl_vec3 from;        /* displacement when elements tightened last, or at the start */
 } look;
 
 typedef struct watch {
     const tl_trials *t;
     look *look;     /* [bodies] */
+    tl_vec3 *pull;  /* [bodies], force of elements now, N */
     int64_t looked; /* cycle of the last look */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
+    bool strained; /* ... for it is strained on and on */
     const char *why;
 } watch;
 
@@ -318,12 +331,31 @@ static tl_status on_step(void *user, tl_model *copy)
     return tl_model_interrupted(w->t->asked) ? TL_E_CANCELLED : TL_OK;
 }
 
+static bool is_far(const watch *w, const tl_model *copy, uint32_t body)
+{
+    const tl_vec3 gone = tl_v3_sub(copy->bodies.pose[body].u, w->look[body].from);
+    return tl_v3_norm(gone) > FAR * w->t->settles;
+}
+
+/* Whether elements stop a body that has gone by u since the last look: the work of what drives it on, over the rise of
+ * their force, is short. */
+static bool is_caught(const watch *w, const tl_model *copy, uint32_t body, tl_vec3 u)
+{
+    const tl_vec3 rise = tl_v3_sub(w->pull[body], w->look[body].pulled);
+    const double way2 = tl_v3_norm2(u), tightens = -tl_v3_dot(rise, u);
+    if (!(way2 > 0 && tightens > 0))
+        return false;
+    const double driven = tl_v3_dot(copy->bodies.force[body], u);
+    return driven * sqrt(way2) <= tightens * CAUGHT * copy->bodies.radius[body];
+}
+
 /* Looks at all bodies; true when some one fails. */
 static bool looks(void *user, tl_model *copy)
 {
     watch *w = user;
     const double settles = w->t->settles;
     w->looked = copy->cycles;
+    tl_elements_pull(copy, w->pull);
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++) {
         look *l = &w->look[body];
         const tl_vec3 u = copy->bodies.pose[body].u;
@@ -331,10 +363,14 @@ static bool looks(void *user, tl_model *copy)
         if (!tl_body_is_free(copy, body))
             continue;
         const bool grows = far > SUSPECT * settles && way >= l->way && way > STANDS * settles;
-        l->grows = grows ? l->grows + 1 : 0;
+        const bool caught = is_caught(w, copy, body, tl_v3_sub(u, l->last));
+        l->grows = grows && !caught ? l->grows + 1 : 0;
         l->last = u;
         l->way = way;
-        if (l->grows < GROWS && far <= FAR * settles)
+        l->pulled = w->pull[body];
+        if (caught)
+            l->from = u;
+        if (l->grows < GROWS && !is_far(w, copy, body))
             continue;
         if (!w->fails)
             w->why = l->grows >= GROWS ? "goes on" : "far";
@@ -343,18 +379,34 @@ static bool looks(void *user, tl_model *copy)
     return w->fails;
 }
 
+static void watch_end(watch *w)
+{
+    free(w->look);
+    free(w->pull);
+    w->look = NULL;
+    w->pull = NULL;
+}
+
 static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
 {
     *w = (watch){.t = t,
                  .looked = copy->cycles,
                  .verdict = TL_NO_ID,
-                 .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
-    for (uint32_t body = 0; w->look && body < copy->bodies.table.rows; body++)
+                 .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look),
+                 .pull = calloc(copy->bodies.table.rows + 1, sizeof *w->pull)};
+    if (!w->look || !w->pull) {
+        watch_end(w);
+        return false;
+    }
+    tl_elements_pull(copy, w->pull);
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         w->look[body] = (look){.body = copy->bodies.id[body],
                                .start = copy->bodies.pose[body].u,
+                               .from = copy->bodies.pose[body].u,
                                .last = copy->bodies.pose[body].u,
-                               .turned = copy->bodies.q[body]};
-    return w->look != NULL;
+                               .turned = copy->bodies.q[body],
+                               .pulled = w->pull[body]};
+    return true;
 }
 
 /* How far the corners of a body have gone by rotation, m. */
@@ -372,7 +424,7 @@ static double gone_of(const watch *w, const tl_model *m, uint32_t body)
 static bool body_fails(const watch *w, const tl_model *m, uint32_t body)
 {
     const look *l = &w->look[body];
-    return l->body == w->verdict || l->grows >= GROWS || gone_of(w, m, body) > FAR * w->t->settles;
+    return l->body == w->verdict || l->grows >= GROWS || is_far(w, m, body);
 }
 
 /* The fastest of the bodies that fail; where none does, of all. */
@@ -390,6 +442,13 @@ static uint32_t fastest_of(const watch *w, const tl_model *m)
         }
     }
     return fastest;
+}
+
+/* Sum of the sizes of forces that bear a body, N: of contacts and, of a deformable one, of what holds its points. */
+static double borne_by(const tl_model *m, uint32_t body)
+{
+    const tl_body_mesh *mesh = tl_mesh_of_body(m, body);
+    return mesh ? tl_mesh_whole_of(m, mesh).borne : m->cycle->contact_force[body];
 }
 
 /* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
@@ -419,14 +478,15 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
         tl_addends_put(&sum[2], own * gone.z);
         tl_addends_put(&ways, own * tl_v3_norm(gone));
         tl_addends_put(&turns, own * turned_of(m, l, body));
-        tl_addends_put(&bears, share * m->cycle->contact_force[body]);
+        tl_addends_put(&bears, share * borne_by(m, body));
         tl_addends_put(&weighs, own * tl_v3_norm(m->config.gravity));
     }
     fall->volume = tl_addends_sum(&volume);
     fall->way = tl_v3_unit(tl_v3(tl_addends_sum(&sum[0]), tl_addends_sum(&sum[1]), tl_addends_sum(&sum[2])));
-    fall->mode = tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
-                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)        ? TL_SAFETY_TURNS
-                                                                         : TL_SAFETY_SLIDES;
+    fall->mode = w->strained                                               ? TL_SAFETY_YIELDS
+                 : tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
+                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)          ? TL_SAFETY_TURNS
+                                                                           : TL_SAFETY_SLIDES;
     return TL_OK;
 }
 
@@ -434,7 +494,7 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 static double settles_now(const tl_model *copy)
 {
     tl_watch *w = tl_watch_begin(copy);
-    const double settles = w ? tl_watch_settlement(w, copy) : 0;
+    const double settles = w ? tl_watch_settlement(w, copy) + tl_elements_settlement(copy) : 0;
     if (w)
         tl_watch_end(w);
     return settles;
@@ -473,7 +533,7 @@ static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
         for (size_t row = 0; row < before; row++)
             if (old[row].body == next.look[body].body)
                 next.look[body] = old[row];
-    free(w->look);
+    watch_end(w);
     *w = next;
     return TL_OK;
 }
@@ -497,6 +557,7 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
         return TL_OK;
     if (fails)
         w->verdict = r->run.failing;
+    w->strained = fails && copy->cycle->fails_strained;
     if (copy->cycles > w->looked)
         looks(w, copy); /* the ways since the last look */
     tl_status status = list_fall(w, copy, fall);
@@ -539,7 +600,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
     for (uint32_t body = 0; status == TL_OK && body < copy->bodies.table.rows; body++)
         if (tl_body_is_free(copy, body))
             t->moved = fmax(t->moved, gone_of(&w, copy, body) / t->settles);
-    free(w.look);
+    watch_end(&w);
     return status;
 }
 
@@ -551,7 +612,7 @@ static tl_status measure(tl_trials *t, int64_t settled)
         return tl_fail_memory(&t->asked->error);
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
-    t->settles = tl_watch_settlement(w, t->base);
+    t->settles = tl_watch_settlement(w, t->base) + tl_elements_settlement(t->base);
     t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
@@ -664,21 +725,26 @@ static tl_status make_stiffer(tl_trials *t, bool *usable)
     return status;
 }
 
-/* Makes a trial, with stiffer and stiffer joints while it rests and that may hang on how soft they are. */
-static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+/* Makes a trial that has come to rest again, with stiffer and stiffer joints while it rests, and may rest only because
+ * they are soft. */
+static tl_status confirm(tl_trials *t, tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_status status = make_one(t, factor, trial, fall);
+    const double factor = trial->factor;
     int64_t cycles = trial->cycles;
-    double before = 0;
-    bool usable = true;
-    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SLIPS, GROWN * before);) {
-        before = at->moved;
+    double moved = fall->moved, before = 0;
+    tl_status status = TL_OK;
+    for (tl_trials *at = t; trial->holds && moved > fmax(SLIPS, GROWN * before);) {
+        bool usable;
+        before = moved;
         status = make_stiffer(at, &usable);
         at = at->stiffer;
         if (status != TL_OK || !usable)
             break;
         tl_fall_free(fall);
         status = make_one(at, factor, trial, fall);
+        if (status != TL_OK)
+            break;
+        moved = at->moved;
         cycles += trial->cycles;
         t->cycles += trial->cycles;
     }
@@ -687,12 +753,19 @@ static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fa
     return status;
 }
 
-tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
-    *fall = (tl_fall){.ids = NULL};
-    tl_status status = TL_OK;
-    if (!take_made(t, factor, trial, fall))
-        status = make(t, factor, trial, fall);
+    tl_status status = make_one(t, factor, trial, fall);
+    trial->factor = factor;
+    fall->moved = t->moved;
+    if (status == TL_OK && t->confirms)
+        status = confirm(t, trial, fall);
+    return status;
+}
+
+/* Counts a trial, and tells of it. */
+static tl_status finish(tl_trials *t, tl_status status, const tl_safety_trial *trial, tl_fall *fall)
+{
     t->undecided += status == TL_OK && trial->undecided ? 1 : 0;
     if (status == TL_OK && t->options.on_trial) {
         tl_model_only_read(t->asked, true);
@@ -702,6 +775,30 @@ tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_
     if (status != TL_OK)
         tl_fall_free(fall);
     return status;
+}
+
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = TL_OK;
+    if (!take_made(t, factor, trial, fall))
+        status = make(t, factor, trial, fall);
+    return finish(t, status, trial, fall);
+}
+
+tl_status tl_trials_confirm(tl_trials *t, double factor, double moved, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.moved = moved};
+    *trial = (tl_safety_trial){.factor = factor, .holds = 1, .why = "at rest"};
+    const tl_status status = confirm(t, trial, fall);
+    return status == TL_OK && trial->cycles == 0 ? status : finish(t, status, trial, fall);
+}
+
+void tl_trials_confirm_all(tl_trials *t, bool all)
+{
+    if (t->confirms != all)
+        forget_made(t);
+    t->confirms = all;
 }
 
 void tl_trials_end(tl_trials *t)

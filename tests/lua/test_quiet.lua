@@ -188,7 +188,6 @@ model:generate("box", { min = { 2, 0, 0 }, max = { 3, 1, 1 }, density = 2500 })
 model:solid("rock", "elastic", { young = 1e9, poisson = 0.2 })
 model:blocks { containing = { 2.5, 0.5, 0.5 } }:deformable { zone = 1, solid = "rock" }
 refused({ zmin = { quiet = true } }, "block 1 is rigid and block 2 deformable")
-refused({ side = "xmax", quiet = true, input = { wave, 0, 0 } }, "block 2 is deformable")
 
 -- The kind itself refuses what is no face, no rock and no wave.
 local good = { faces = "1 0 1 1 2500", kn = 1e10, ks = 4e9 }
