@@ -18,6 +18,7 @@
 #include "contact/places.h"
 #include "contact/sides.h"
 #include "cycle/cycle_data.h"
+#include "element/elements.h"
 #include "zone/zones.h"
 
 #include <math.h>
@@ -290,6 +291,27 @@ static tl_status add_contacts(vibration *v)
     return TL_OK;
 }
 
+/* Elements push and pull, but how stiff they are at rest no kind tells: what they hold swings too slowly. */
+static void say_elements(const vibration *v)
+{
+    const struct tl_elements *e = v->m->elements;
+    size_t holding = 0;
+    for (size_t row = 0; e && row < e->table.table.rows; row++) {
+        bool holds = false;
+        for (uint32_t k = 0; k < e->table.node_count[row] && !holds; k++) {
+            const uint32_t node = e->table.node_begin[row] + k, body = e->nodes.body[node];
+            holds = e->nodes.k[node] > 0 && body != TL_NO_ROW && v->number[body] != TL_NO_ROW;
+        }
+        holding += holds;
+    }
+    if (holding)
+        tl_model_say(
+            v->m,
+            "modes: %zu element%s that hold%s free blocks, as springs and bolts do, %s not counted: with them the "
+            "frequencies are higher",
+            holding, holding == 1 ? "" : "s", holding == 1 ? "s" : "", holding == 1 ? "is" : "are");
+}
+
 /* Adds a little stiffness to the diagonal, and gives it. */
 static double add_little(vibration *v)
 {
@@ -444,6 +466,8 @@ tl_status tl_model_modes(tl_model *m, size_t count, tl_modes *modes)
         status = make_matrix(&v);
     if (status == TL_OK)
         status = add_contacts(&v);
+    if (status == TL_OK)
+        say_elements(&v);
     if (status == TL_OK)
         status = find(&v, count, modes);
     tl_skyline_free(&v.k);

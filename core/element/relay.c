@@ -3,9 +3,9 @@
  * Kinds with `lays_again` lie on what blocks have in common, such as walls of joints. They place again when blocks have
  * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
- * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on
- * the same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are
- * RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
+ * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
+ * same block. An element with a new key takes those of the nearest old one of its call, between three nodes linearly.
+ * States that are RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -216,26 +216,140 @@ static void inherit(tl_model *m, uint32_t row, uint32_t from)
     }
 }
 
-/* The nodes of an element that has no older one get states from the nearest node of its set before `first`. It may be
- * on any block: parts of blocks that were cut have other names. */
-static void inherit_near(struct tl_elements *e, uint32_t row, uint32_t first)
+/* An old node, by the set of its element and a coordinate. */
+typedef struct old_node {
+    uint32_t set, node, row;
+    double x;
+} old_node;
+
+static int compare_nodes(const void *a, const void *b)
 {
+    const old_node *p = a, *q = b;
+    if (p->set != q->set)
+        return p->set < q->set ? -1 : 1;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return (p->node > q->node) - (p->node < q->node);
+}
+
+/* Old nodes, of elements before some row, in the order of compare_nodes. */
+typedef struct old_nodes {
+    old_node *at;
+    size_t count;
+} old_nodes;
+
+static bool list_old_nodes(const struct tl_elements *e, uint32_t first, old_nodes *list)
+{
+    const tl_element_table *t = &e->table;
+    const size_t nodes = first ? t->node_begin[first - 1] + t->node_count[first - 1] : 0;
+    list->at = malloc((nodes + 1) * sizeof *list->at);
+    for (uint32_t row = 0; row < first && list->at; row++)
+        for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++)
+            list->at[list->count++] = (old_node){t->set[row], k, row, tl_node_place(&e->nodes, k).x};
+    if (list->count > 1)
+        qsort(list->at, list->count, sizeof *list->at, compare_nodes);
+    return list->at != NULL;
+}
+
+/* The one of a set that is nearest to node k, the first of several, and the row of its element; TL_NO_ROW: the set has
+ * none. Those whose x is farther off than the nearest so far are not looked at. */
+static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *list, uint32_t set, uint32_t k,
+                               uint32_t *row)
+{
+    const tl_vec3 place = tl_node_place(&e->nodes, k);
+    const old_node sought = {set, 0, 0, place.x};
+    size_t low = 0, high = list->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_nodes(&list->at[middle], &sought) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    uint32_t best = TL_NO_ROW;
+    *row = TL_NO_ROW;
+    double least = INFINITY;
+    for (int way = -1; way <= 1; way += 2)
+        for (size_t i = way > 0 ? low : low - 1; i < list->count && list->at[i].set == set; i += (size_t)way) {
+            const old_node *of = &list->at[i];
+            if ((of->x - place.x) * (of->x - place.x) > least)
+                break;
+            const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(&e->nodes, of->node), place));
+            if (far < least || (far == least && of->node < best)) {
+                least = far;
+                best = of->node;
+                *row = of->row;
+            }
+        }
+    return best;
+}
+
+/* Tolerance: how far off the plane of three old nodes a new one lies at most that takes its states from all three, over
+ * their distance. */
+#define IN_PLANE 1e-3
+
+/* Limit: how far off 1/2 parts of three nodes are at a place that takes its states from them. On a triangle whose
+ * pressure three inner nodes integrate they are so by 1.5. */
+#define FARTHEST_PART 1.6
+
+/* Three nodes, and the parts of each by which a state that is linear between them is found at a place. */
+typedef struct between {
+    uint32_t node[3];
+    double part[3];
+} between;
+
+/* The three nodes that an old element has on the wall of one of them; false: it has more or fewer, they lie in a line,
+ * or the place is off their plane. */
+static bool find_between(const tl_model *m, uint32_t row, uint32_t one, uint32_t k, between *of)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_node_table *n = &e->nodes;
+    const tl_vec3 outward = tl_node_normal(m, one);
+    uint32_t count = 0;
+    for (uint32_t i = e->table.node_begin[row]; i < e->table.node_begin[row] + e->table.node_count[row]; i++)
+        if (tl_v3_dot(tl_node_normal(m, i), outward) > 0) {
+            if (count < 3)
+                of->node[count] = i;
+            count++;
+        }
+    if (count != 3)
+        return false;
+    const tl_vec3 from = tl_node_place(n, of->node[0]);
+    const tl_vec3 a = tl_v3_sub(tl_node_place(n, of->node[1]), from),
+                  b = tl_v3_sub(tl_node_place(n, of->node[2]), from);
+    const tl_vec3 d = tl_v3_sub(tl_node_place(n, k), from), normal = tl_v3_cross(a, b);
+    const double area2 = tl_v3_norm2(normal), size2 = fmax(tl_v3_norm2(a), tl_v3_norm2(b));
+    const double off = tl_v3_dot(d, normal);
+    if (!(area2 > IN_PLANE * IN_PLANE * size2 * size2) || off * off > IN_PLANE * IN_PLANE * size2 * area2)
+        return false;
+    of->part[1] = tl_v3_dot(tl_v3_cross(d, b), normal) / area2;
+    of->part[2] = tl_v3_dot(tl_v3_cross(a, d), normal) / area2;
+    of->part[0] = 1 - of->part[1] - of->part[2];
+    return fmax(fabs(of->part[0] - 0.5), fmax(fabs(of->part[1] - 0.5), fabs(of->part[2] - 0.5))) < FARTHEST_PART;
+}
+
+/* The nodes of an element that has no older one get states from the old element of its set that has the nearest node.
+ * It may be on any blocks: parts of blocks that were cut have other names. In the plane of three nodes states go on
+ * linearly. So the parts of a wall are pressed as the whole was. */
+static void inherit_near(tl_model *m, const old_nodes *list, uint32_t row)
+{
+    struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
     const passing pass = passing_of(e->set[t->set[row]].kind);
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
-        uint32_t best = TL_NO_ROW;
-        double least = INFINITY;
-        for (uint32_t old = 0; old < first; old++)
-            for (uint32_t i = t->node_begin[old];
-                 t->set[old] == t->set[row] && i < t->node_begin[old] + t->node_count[old]; i++) {
-                const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(n, i), tl_node_place(n, k)));
-                best = far < least ? i : best;
-                least = fmin(least, far);
-            }
-        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++)
-            if (pass.node[c])
-                n->state[c][k] = n->state[c][best];
+        uint32_t of;
+        const uint32_t best = nearest_of_set(e, list, t->set[row], k, &of);
+        between three;
+        const bool linear = best != TL_NO_ROW && find_between(m, of, best, k, &three);
+        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++) {
+            double *state = n->state[c];
+            if (!pass.node[c])
+                continue;
+            state[k] = linear ? three.part[0] * state[three.node[0]] + three.part[1] * state[three.node[1]] +
+                                    three.part[2] * state[three.node[2]]
+                              : state[best];
+        }
     }
 }
 
@@ -245,8 +359,11 @@ static bool inherit_all(tl_model *m, uint32_t first)
     struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     old_one *list = malloc((first + (size_t)1) * sizeof *list);
-    if (!list)
+    old_nodes near = {NULL, 0};
+    if (!list || !list_old_nodes(e, first, &near)) {
+        free(list);
         return false;
+    }
     for (uint32_t row = 0; row < first; row++)
         list[row] = (old_one){t->set[row], row, t->key[row]};
     if (first > 1)
@@ -257,8 +374,9 @@ static bool inherit_all(tl_model *m, uint32_t first)
         if (found)
             inherit(m, row, found->row);
         else
-            inherit_near(e, row, first);
+            inherit_near(m, &near, row);
     }
+    free(near.at);
     free(list);
     return true;
 }

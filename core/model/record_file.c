@@ -202,6 +202,8 @@ static tl_status take_line(reading *r, const double *number, size_t count)
 static tl_status read_lines(reading *r)
 {
     tl_status status = TL_OK;
+    if (strncmp(r->at, "\xef\xbb\xbf", 3) == 0) /* UTF-8's mark */
+        r->at += 3;
     for (r->line = 1; status == TL_OK && *r->at; r->line++) {
         double number[COLUMNS];
         const char *end, *begin = r->at;

@@ -73,3 +73,21 @@ held:cycle(1)
 check.refused(held, function() held:modes() end, "nothing can vibrate")
 local curved = tower { law = "barton_bandis", params = { jrc = 8, jcs = 80e6, phi_r = 30, kni = 1e10, vm = 1e-3, ks = 1e9 } }
 check.refused(curved, function() curved:modes() end, "law 'barton_bandis'")
+
+-- Elements are not counted: that is said, where they hold something that is free.
+local path = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/modes.lua"
+for _, case in ipairs { { "2, 0, 0", true }, { "0, 0, 0.4", false } } do
+    local file = assert(io.open(path, "w"))
+    file:write(([[
+local m = require "talus".model { gravity = { 0, 0, 0 } }
+m:generate("box", { min = { -0.5, -0.5, -0.5 }, max = { 0.5, 0.5, 0.5 }, density = 1000 })
+m:generate("box", { min = { 1.5, -0.5, -0.5 }, max = { 2.5, 0.5, 0.5 }, density = 1000 })
+m:element("spring", { from = { 0, 0, 0 }, to = { %s }, stiffness = 1e5 })
+m:blocks { id = 1 }:fix()
+m:cycle(1)
+m:modes { count = 2 }]]):format(case[1]))
+    file:close()
+    local pipe = assert(io.popen(("'%s' '%s' 2>&1"):format(os.getenv("TALUS_PROGRAM") or arg[-1], path)))
+    check.equal(pipe:read("a"):find("modes: 1 element that holds free blocks", 1, true) ~= nil, case[2])
+    pipe:close()
+end

@@ -78,6 +78,7 @@ end
 same(talus.record { file = write("two.csv", "time,acc\n0,0\n0.01,1\n0.02,0.5\n0.03,-1\n"), unit = "g" })
 same(talus.record { file = write("three.txt", "# a\n0 9 0\n0.01 9 1\n0.02 9 0.5\n\n0.03 9 -1"), column = 3, unit = "g" })
 same(talus.record { file = write("one.txt", "0\r\n1\r\n.5\r\n-1E0\r\n"), dt = 0.01, unit = "g" })
+same(talus.record { file = write("mark.csv", "\xef\xbb\xbf0,0\n0.01,1\n0.02,0.5\n0.03,-1\n"), unit = "g" }) -- of an editor
 same(talus.record { file = write("new.AT2", "PEER NGA STRONG MOTION DATABASE RECORD\nSomewhere, 1/2/1999, A, 90\n"
     .. "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   4, DT=   .0100 SEC,\n  .0000000E+00  .1000000E+01\n  .5  -1\n") })
 same(talus.record { file = write("old.AT2", "PEER\nX\nACCELERATION TIME HISTORY IN UNITS OF G\n 4    0.0100    NPTS, DT\n 0 1 .5\n-1\n") })

@@ -200,7 +200,7 @@ static double pressure_at(const params *p, const table *t, const tl_element_batc
 {
     switch (p->source) {
     case UNIFORM: return p->pressure;
-    case FIELD: return b->state[SOURCE][i];
+    case FIELD: return fmax(0, b->state[SOURCE][i]); /* of parts of a wall it is extended from the whole */
     case TABLE: {
         const tl_vec3 x = {b->rest[0][i] + b->u[0][i], b->rest[1][i] + b->u[1][i], b->rest[2][i] + b->u[2][i]};
         return fmax(0, p->factor * p->unit_weight * depth_of(t, x));
