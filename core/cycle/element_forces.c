@@ -1,10 +1,14 @@
 /* element_forces.c - elements act on bodies: a contributor of a step. */
 #include "cycle/element_forces.h"
 
+#include "base/columns.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
 #include "element/act.h"
 #include "element/follow.h"
+#include "element/together.h"
+
+#include <string.h>
 
 static tl_status apply(tl_model *m)
 {
@@ -40,7 +44,16 @@ static bool may_fail(const tl_model *m)
         sure = sure && tl_element_ops_of(&e->set[k])->never_fails;
     for (size_t row = 0; sure && row < e->nodes.table.rows; row++)
         sure = e->nodes.k[row] < TL_UNDO_TAME && e->nodes.c[row] < TL_UNDO_TAME;
-    return !sure;
+    return !sure || tl_elements_together_due(m);
+}
+
+void tl_elements_pull(const tl_model *m, tl_vec3 *force)
+{
+    const tl_node_table *n = m->elements ? &m->elements->nodes : NULL;
+    memset(force, 0, m->bodies.table.rows * sizeof *force);
+    for (uint32_t row = 0; n && tl_elements_are_listed(m) && row < n->table.rows; row++)
+        if (n->body[row] != TL_NO_ROW)
+            force[n->body[row]] = tl_v3_add(force[n->body[row]], tl_columns_get(n->force, row));
 }
 
 const tl_contributor tl_elements_act = {.name = "elements",

@@ -6,4 +6,7 @@
 
 extern const tl_contributor tl_elements_act;
 
+/* The force of all nodes on each body in the last step, force[rows of bodies], N; 0 where nodes have no body yet. */
+void tl_elements_pull(const tl_model *m, tl_vec3 *force);
+
 #endif

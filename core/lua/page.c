@@ -148,7 +148,7 @@ static void ask_function(lua_State *L, request *r, tl_extra_field *field)
     lua_pushlightuserdata(L, r);
     lua_pushlightuserdata(L, field);
     lua_pushvalue(L, 1);
-    if (tl_lua_call_reading(L, r->items->owner, 4) != LUA_OK)
+    if (tl_lua_call_reading(L, r->items->owner, 4, 0) != LUA_OK)
         tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name, luaL_tolstring(L, -1, NULL));
 }
 
