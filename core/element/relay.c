@@ -3,9 +3,9 @@
  * Kinds with `lays_again` lie on what blocks have in common, such as walls of joints. They place again when blocks have
  * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
- * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
- * same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are RESET
- * are those that `place` gives. Where nothing has moved all are the same to the bit. */
+ * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on
+ * the same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are
+ * RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -190,8 +190,8 @@ static passing passing_of(const tl_kind *kind)
     return p;
 }
 
-/* Gives an element what an old one with its key had, and its number. Blocks have moved since forces were last asked for:
- * nodes are given that motion for the step to come. */
+/* Gives an element what an old one with its key had, and its number. Blocks have moved since forces were last asked
+ * for: nodes are given that motion for the step to come. */
 static void inherit(tl_model *m, uint32_t row, uint32_t from)
 {
     struct tl_elements *e = m->elements;

@@ -232,7 +232,7 @@ static const tl_lua_key safety_results[] = {
     {"volume, direction", "", "of these, m3, and where they go, a unit vector; without any direction is nil"},
     {"mode", "",
      "\"slides\"; \"turns\" (its corners go farther by rotation than its centre goes); \"falls\" (nothing bears it); "
-     "\"holds\" without any"},
+     "\"yields\" (a deformable block is strained on and on); \"holds\" without any"},
     {"keyblock", "",
      "{factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is "
      "none, "

@@ -236,7 +236,8 @@ static void push_verb_line(lua_State *L, tl_model *model, const tl_view_command 
                         any_hidden(model, command) ? ", hidden = \"any\"" : "", verb);
 }
 
-/* Pushes the line that does the command, which is not pause, go or step; raises when a block is not there. */
+/* Pushes the line that does the command, or an expression that gives its answer; not of pause, go or step. Raises when
+ * a block is not there. */
 static void push_line(lua_State *L, tl_model *model, const tl_view_command *command, const char *prefix)
 {
     for (size_t i = 0; i < command->block_count; i++)
@@ -260,6 +261,7 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
     case TL_VIEW_SNAPSHOT:
         lua_pushfstring(L, "model:save(%s)", quoted(L, lua_pushfstring(L, "%s%s", prefix, cycle)));
         break;
+    case TL_VIEW_SAFETY: lua_pushliteral(L, "model:factor_of_safety {}.message"); break;
     default: push_verb_line(L, model, command);
     }
 }
@@ -270,12 +272,17 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
 static int do_line(lua_State *L)
 {
     push_line(L, model_of(L), lua_touserdata(L, 2), view_of(L)->prefix);
+    const bool asks = ((const tl_view_command *)lua_touserdata(L, 2))->op == TL_VIEW_SAFETY;
     int line = lua_gettop(L);
-    const char *text = lua_pushfstring(L, "local model = ... %s", lua_tostring(L, line));
+    const char *text = lua_pushfstring(L, "local model = ... %s%s", asks ? "return " : "", lua_tostring(L, line));
     if (luaL_loadbuffer(L, text, strlen(text), "=" CHUNK) != LUA_OK)
         return lua_error(L);
     lua_pushvalue(L, TL_LUA_AT_MODEL);
-    lua_call(L, 1, 0);
+    lua_call(L, 1, asks);
+    if (asks) { /* the answer stands behind the line that asks for it */
+        lua_pushfstring(L, "print(%s) --> %s", lua_tostring(L, line), lua_tostring(L, -1));
+        lua_replace(L, line);
+    }
     lua_settop(L, line);
     return 1;
 }

@@ -2033,6 +2033,7 @@ function Model:water(name, options) end
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field workers? integer in [1, 256], default 1: processes that make trials at once; what is found is the same for any number
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field elements? boolean default false: whether the strengths of elements, such as bolts, are divided, too
 ---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
 ---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
 
@@ -2043,7 +2044,7 @@ function Model:water(name, options) end
 ---@field failing talus.Blocks selection of the blocks that go together at `upper`: those within 0.3 of the fastest
 ---@field volume number? of these, m3, and where they go, a unit vector; without any direction is nil
 ---@field direction talus.Vector? of these, m3, and where they go, a unit vector; without any direction is nil
----@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "holds" without any
+---@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "yields" (a deformable block is strained on and on); "holds" without any
 ---@field keyblock { block: talus.Block, factor: number }? {factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is none, or laws have no friction and cohesion or name blocks
 ---@field trials { F: number, cycles: integer, holds: boolean, undecided: boolean, why: string }[] each a table: F, holds, undecided, cycles, why; in the order in which they were made
 ---@field small talus.Blocks selection of the blocks below least_volume that failed before at `upper`, and were deleted in that copy
@@ -2067,6 +2068,7 @@ function Model:factor_of_safety(options) end
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field workers? integer in [1, 256], default 1: processes that make trials at once; what is found is the same for any number
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field elements? boolean default false: whether the strengths of elements, such as bolts, are divided, too
 ---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
 ---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
 

@@ -5,6 +5,7 @@
 
 Without the plugin that serves pages one sentence, and status 77."""
 import os
+import re
 import pathlib
 import signal
 import subprocess
@@ -135,6 +136,10 @@ def test_refused(folder):
         text = answer.read().decode()
         connection.close()
         check(answer.status == 400 and words in text, f"{body}: {answer.status} {text}")
+    check(program.command(op="factor_of_safety")[0] == 202, "factor_of_safety is not taken")
+    check(watcher.until(lambda w: w.lines), f"no factor is told: {watcher.refused}")
+    check(re.fullmatch(r"print\(model:factor_of_safety {}\.message\) --> [^\n]*(factor of safety \d|it holds at|it fails at|no strength)[^\n]*", watcher.lines[-1]),
+          f"the factor is told as {watcher.lines}")
     program.command(op="go")
     out, status = program.end()
     check(status == 0 and out == run(script.replace("model:view { wait = true }", "")).stdout, f"{status} {out}")

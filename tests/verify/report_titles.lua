@@ -106,6 +106,8 @@ local TITLES = {
     { "FS.wedges", "factors of safety of wedges with water and bolts" },
     { "FS.two_blocks", "factor of safety of two blocks that push" },
     { "FS.random", "factors of safety of random wedges" },
+    { "FS.many", "factors of safety of random wedges and slopes, in all forms" },
+    { "FS.griffiths", "factor of safety of a slope of soil" },
     { "FS.same", "one factor of safety in other units and places" },
     { "E1.dipscan", "paper's wedge, friction at failure over the dip of a plane" },
     { "E1.run(%d)", "paper's wedge, run %1" },
