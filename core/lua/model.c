@@ -10,6 +10,7 @@
 #include "lua/quiet.h"
 #include "lua/run.h"
 #include "lua/view.h"
+#include "lua/wave_checks.h"
 #include "lua/zones.h"
 
 #include <math.h>
@@ -61,6 +62,8 @@ static int model_damping(lua_State *L, tl_model *model)
     const char *damping = tl_lua_text(L, 2, "damping", "the damping's name");
     tl_args args;
     tl_lua_args(L, 3, lua_pushfstring(L, "damping '%s'", damping), NULL, &args);
+    if (tl_lua_damps_all(damping))
+        tl_lua_waves_keep(L, model, damping);
     tl_lua_ok(L, model, tl_model_damping(model, damping, &args));
     tl_lua_free_field_damp(L, model);
     return 0;

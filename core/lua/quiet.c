@@ -11,6 +11,7 @@
 #include "lua/incoming.h"
 #include "lua/living.h"
 #include "lua/record.h"
+#include "lua/wave_checks.h"
 
 #include <float.h>
 #include <math.h>
@@ -238,6 +239,11 @@ static void put_faces(lua_State *L, tl_model *model, const tl_lua_quiet *plan, c
     lua_pushvalue(L, to);
 }
 
+bool tl_lua_damps_all(const char *name)
+{
+    return strcmp(name, "local") == 0 || strcmp(name, "combined") == 0;
+}
+
 /* Puts the waves that come in into the table at the top. */
 static void put_waves(lua_State *L, tl_model *model, int table)
 {
@@ -252,9 +258,11 @@ static void put_waves(lua_State *L, tl_model *model, int table)
     if (!tl_lua_record_velocity(L, records, &constant) || tl_v3_norm2(constant) > 0)
         tl_lua_fail(L, "boundary: input must be {x, y, z}, each a talus.record or 0, and one of them a record");
     const tl_plugin_setting damping = tl_model_damping_now(model);
-    if (damping.kind && strcmp(damping.kind->name, "local") == 0)
-        tl_lua_fail(L, "boundary: a wave comes in under damping 'local', which takes out vibrations of all "
-                       "frequencies: use \"rayleigh\", \"dashpot\" or \"none\"");
+    if (damping.kind && tl_lua_damps_all(damping.kind->name))
+        tl_lua_fail(L,
+                    "boundary: a wave comes in under damping '%s', which takes out vibrations of all frequencies: use "
+                    "\"rayleigh\", \"dashpot\" or \"none\"",
+                    damping.kind->name);
     for (int k = 0; k < 3; k++) {
         if (!records[k])
             continue;
@@ -531,6 +539,47 @@ static tl_status give_way(tl_model *model, const tl_lua_quiet *plan, const char 
     return status;
 }
 
+/* Velocities of waves in what was cut off behind the faces. */
+static tl_lua_wave_face *wave_faces(lua_State *L, tl_model *model, const tl_lua_quiet *plan)
+{
+    const double given = option(L, plan->table, "density"), p = option(L, plan->table, "p_velocity");
+    const double s = option(L, plan->table, "s_velocity");
+    const double *centroid = numbers_of(L, model, plan->block, plan->face_count, "centroid", 3);
+    const double *density = numbers_of(L, model, plan->block, plan->face_count, "density", 1);
+    tl_lua_wave_face *faces = lua_newuserdatauv(L, (plan->face_count + 1) * sizeof *faces, 0);
+    double kn = NAN, ks = NAN;
+    if (isnan(p)) {
+        lua_newtable(L);
+        put_rock(L, model, plan->table, "");
+        kn = option(L, lua_gettop(L), "kn");
+        ks = option(L, lua_gettop(L), "ks");
+    }
+    for (size_t i = 0; i < plan->face_count; i++) {
+        const tl_boundary_face *f = &plan->faces[i];
+        const tl_vec3 c = {centroid[3 * i], centroid[3 * i + 1], centroid[3 * i + 2]};
+        const double height = 2 * tl_v3_dot(f->normal, tl_v3_sub(f->centroid, c));
+        const double per = height / (isnan(given) ? density[i] : given);
+        faces[i] = (tl_lua_wave_face){plan->block[i], height, isnan(p) ? sqrt(kn * per) : p,
+                                      isnan(p) ? sqrt(ks * per) : s, f->normal};
+    }
+    return faces;
+}
+
+/* Remarks on waves that cannot come in as they are. */
+static void look_at_waves(lua_State *L, tl_model *model, const tl_lua_quiet *plan)
+{
+    const tl_record *records[3] = {NULL, NULL, NULL};
+    tl_vec3 constant = {0, 0, 0};
+    const int top = lua_gettop(L);
+    const bool input = plan->table && plan->kind && tl_lua_option(L, plan->table, "input") != LUA_TNIL;
+    if (input && tl_lua_record_velocity(L, records, &constant)) {
+        tl_lua_waves_step(L, model, records);
+        if (strcmp(plan->kind, QUIET) == 0)
+            tl_lua_waves_blocks(L, records, wave_faces(L, model, plan), plan->face_count);
+    }
+    lua_settop(L, top);
+}
+
 void tl_lua_quiet_place(lua_State *L, tl_model *model, const tl_lua_quiet *plan)
 {
     tl_status status = plan->kind ? give_way(model, plan, QUIET) : TL_OK;
@@ -549,4 +598,5 @@ void tl_lua_quiet_place(lua_State *L, tl_model *model, const tl_lua_quiet *plan)
     if (status == TL_OK)
         status = tl_blocks_release(model, plan->block, count, plan->what);
     tl_lua_ok(L, model, status);
+    look_at_waves(L, model, plan);
 }

@@ -34,6 +34,8 @@ typedef struct tl_lua_quiet {
 size_t tl_lua_quiet_plan(lua_State *L, tl_model *model, const tl_lua_sides *sides, tl_lua_quiet *plans, bool *planned);
 /* Does one, in the place of earlier quiet faces and free fields there. */
 void tl_lua_quiet_place(lua_State *L, tl_model *model, const tl_lua_quiet *plan);
+/* Whether a damping takes out vibrations of all frequencies. */
+bool tl_lua_damps_all(const char *name);
 /* Lets free fields have the damping that the model has got. */
 void tl_lua_free_field_damp(lua_State *L, tl_model *model);
 

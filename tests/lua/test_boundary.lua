@@ -257,7 +257,7 @@ refused(function() model:boundary() end, "a side (\"xmin\") or a table is expect
 refused(function() model:boundary {} end, "say where")
 refused(function() model:boundary { fixed = true } end, "say where")
 refused(function() model:boundary { side = "left" } end, "unknown side 'left'")
-refused(function() model:boundary { xmin = "rolled" } end, "xmin must be \"roller\", \"fixed\" or a table")
+refused(function() model:boundary { xmin = "rolled" } end, "xmin must be \"roller\", \"fixed\", \"free_field\" or a table")
 refused(function() model:boundary { xmin = { side = "xmax" } } end, "xmin says where")
 refused(function() model:boundary { xmin = "fixed", pressure = 3 } end, "what is to be done goes into their tables")
 refused(function() model:boundary { xmim = "fixed" } end, "did you mean 'xmi")
