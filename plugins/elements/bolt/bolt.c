@@ -215,8 +215,10 @@ static void warn(const tl_element_host *host, const params *p, const tl_line_nod
         empty += at[i].passes && gap > p->diameter ? gap : 0;
     }
     if (crossings == 0)
-        host->log(host, "the bolt from (%g, %g, %g) to (%g, %g, %g) lies in one body, so it holds nothing", p->from.x,
-                  p->from.y, p->from.z, p->to.x, p->to.y, p->to.z);
+        host->log(
+            host,
+            "the bolt from (%g, %g, %g) to (%g, %g, %g) lies in one body, so it holds nothing unless that deforms",
+            p->from.x, p->from.y, p->from.z, p->to.x, p->to.y, p->to.z);
     if (empty > 0)
         host->log(host, "the bolt from (%g, %g, %g) to (%g, %g, %g) passes through a void of %g m: it is free there",
                   p->from.x, p->from.y, p->from.z, p->to.x, p->to.y, p->to.z, empty);
