@@ -66,7 +66,7 @@
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
 /* Tolerance: way over the radius of a body within which elements that tighten are to stop it. */
-#define CAUGHT 0.1
+#define CAUGHT 0.03
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
