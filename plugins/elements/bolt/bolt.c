@@ -341,9 +341,9 @@ typedef struct crossing {
 /* A bolt where its nodes are now. Node k of the chain is row[k] of the batch. */
 typedef struct bolt {
     chain c;
-    uint32_t row[TL_ELEMENT_NODES];
-    double h[TL_ELEMENT_NODES]; /* of segments, when installed */
-    tl_vec3 along[TL_ELEMENT_NODES];
+    uint32_t row[CHAIN_ROOM];
+    double h[CHAIN_ROOM]; /* of segments, when installed */
+    tl_vec3 along[CHAIN_ROOM];
     crossing cross[TL_ELEMENT_NODES / 2]; /* each has nodes of its own on either side */
     uint32_t crossings;
 } bolt;
