@@ -1,13 +1,21 @@
-/* element_forces.c - elements act on bodies: a contributor of a step. */
+/* element_forces.c - elements act on bodies: a contributor of a step; and elements with their strengths divided. */
 #include "cycle/element_forces.h"
 
 #include "base/columns.h"
+#include "base/error.h"
+#include "base/strength.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
 #include "element/act.h"
 #include "element/follow.h"
+#include "element/life.h"
+#include "element/set.h"
+#include "element/steady.h"
+#include "element/together.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 static tl_status apply(tl_model *m)
 {
@@ -43,7 +51,7 @@ static bool may_fail(const tl_model *m)
         sure = sure && tl_element_ops_of(&e->set[k])->never_fails;
     for (size_t row = 0; sure && row < e->nodes.table.rows; row++)
         sure = e->nodes.k[row] < TL_UNDO_TAME && e->nodes.c[row] < TL_UNDO_TAME;
-    return !sure;
+    return !sure || tl_elements_together_due(m);
 }
 
 void tl_elements_pull(const tl_model *m, tl_vec3 *force)
@@ -63,3 +71,87 @@ const tl_contributor tl_elements_act = {.name = "elements",
                                         .energies = tl_elements_energies,
                                         .tables = tables,
                                         .may_fail = may_fail};
+
+/* ---------------------------------------------------------------- strengths -------------- */
+
+/* Lists for each set of a copy the set of `from` with the same elements, where these have strengths and are left. */
+static const tl_element_set **find_origins(const tl_model *m, const tl_model *from)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_element_set **list = calloc(e->set_count + 1, sizeof *list);
+    for (uint32_t row = 0; list && row < e->table.table.rows; row++) {
+        const uint32_t set = e->table.set[row];
+        const uint32_t at =
+            list[set] || !tl_kind_has_strength(e->set[set].kind) ? TL_NO_ROW : tl_element_row(from, e->table.id[row]);
+        if (at != TL_NO_ROW)
+            list[set] = &from->elements->set[from->elements->table.set[at]];
+    }
+    return list;
+}
+
+/* Makes a set again with its strengths divided. */
+static tl_status weaken_set(tl_model *m, tl_element_set *set, const tl_element_set *from, double factor)
+{
+    char context[80];
+    tl_args args;
+    void *held;
+    tl_element_set made;
+    tl_text_print(context, sizeof context, "element '%.40s'", from->kind->name);
+    if (!tl_strengths_divide(from->kind, from->params, factor, &args, &held))
+        return tl_fail_memory(&m->error);
+    const tl_status status = tl_element_set_make(from->kind, &args, from, context, &m->error, &made);
+    free(held);
+    if (status != TL_OK)
+        return status;
+    made.group = set->group;
+    made.structure = set->structure;
+    tl_element_set_clear(set);
+    *set = made;
+    return TL_OK;
+}
+
+tl_status tl_elements_weaken(tl_model *m, const tl_model *from, double factor)
+{
+    struct tl_elements *e = m->elements;
+    tl_status status = TL_OK;
+    if (!e || !from->elements)
+        return TL_OK;
+    const tl_element_set **origin = find_origins(m, from);
+    if (!origin)
+        return tl_fail_memory(&m->error);
+    tl_steady_let_go(m);
+    for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
+        if (origin[k])
+            status = weaken_set(m, &e->set[k], origin[k], factor);
+    free(origin);
+    e->version++;
+    m->laws++;
+    tl_undo_by_hand(m);
+    if (m->cycle)
+        m->cycle->dt = 0;
+    return status;
+}
+
+double tl_elements_settlement(const tl_model *m)
+{
+    const tl_node_table *n = m->elements ? &m->elements->nodes : NULL;
+    tl_addends forces = {.count = 0}, gives = {.count = 0};
+    for (uint32_t row = 0; n && row < n->table.rows; row++) {
+        const double force = tl_v3_norm(tl_v3(n->force[0][row], n->force[1][row], n->force[2][row]));
+        if (!(n->k[row] > 0) || !(force > 0))
+            continue;
+        tl_addends_put(&forces, force);
+        tl_addends_put(&gives, force * force / n->k[row]);
+    }
+    const double force = tl_addends_sum(&forces);
+    return force > 0 ? tl_addends_sum(&gives) / force : 0;
+}
+
+bool tl_elements_have_strength(const tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    bool some = false;
+    for (size_t row = 0; e && row < e->table.table.rows; row++)
+        some = some || tl_kind_has_strength(e->set[e->table.set[row]].kind);
+    return some;
+}

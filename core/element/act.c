@@ -5,10 +5,12 @@
 #include "element/act.h"
 
 #include "base/columns.h"
+#include "base/inline.h"
 #include "base/inside.h"
 #include "element/batch.h"
 #include "element/carry.h"
 #include "element/steady.h"
+#include "element/together.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -23,21 +25,40 @@ typedef struct apply_job {
     tl_failure *failure;
 } apply_job;
 
+/* Present displacement and normal of a node: of one on a rigid body without a call, for most nodes are. */
+TL_INLINE tl_vec3 look_at(const tl_model *m, uint32_t row, tl_vec3 *normal)
+{
+    const tl_node_table *n = &m->elements->nodes;
+    const uint32_t body = n->body[row];
+    if (body == TL_NO_ROW || m->bodies.mesh[body]) {
+        *normal = tl_node_normal(m, row);
+        return tl_node_moved(m, row);
+    }
+    const tl_pose *pose = &m->bodies.pose[body];
+    const tl_vec3 outward = tl_columns_get(n->normal, row);
+    *normal = tl_v3_norm2(outward) == 0 ? tl_v3(0, 0, 0) : tl_m3_mul(&pose->r, outward);
+    const tl_vec3 now = tl_v3_add(pose->u, tl_m3_mul(&pose->r, tl_columns_get(n->local, row)));
+    return tl_v3_sub(now, tl_columns_get(n->base, row));
+}
+
 /* Where the nodes of a chunk have gone since the last step. */
 static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes)
 {
     tl_node_table *n = &m->elements->nodes;
     const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
     for (uint32_t row = of->node_begin, i = 0; row < of->node_end; row++, i++) {
-        const tl_vec3 u = tl_node_moved(m, row), normal = tl_node_normal(m, row);
-        const tl_vec3 du = tl_v3_sub(u, tl_columns_get(n->u, row));
+        tl_vec3 normal;
+        const tl_vec3 u = look_at(m, row, &normal), du = tl_v3_sub(u, tl_columns_get(n->u, row));
         tl_columns_put(n->u, row, u);
-        for (int k = 0; k < 3; k++) {
-            const double way = k == 0 ? du.x : k == 1 ? du.y : du.z;
-            lanes->du[k][i] = way;
-            lanes->v[k][i] = per * way;
-            lanes->normal[k][i] = k == 0 ? normal.x : k == 1 ? normal.y : normal.z;
-        }
+        lanes->du[0][i] = du.x;
+        lanes->du[1][i] = du.y;
+        lanes->du[2][i] = du.z;
+        lanes->v[0][i] = per * du.x;
+        lanes->v[1][i] = per * du.y;
+        lanes->v[2][i] = per * du.z;
+        lanes->normal[0][i] = normal.x;
+        lanes->normal[1][i] = normal.y;
+        lanes->normal[2][i] = normal.z;
     }
 }
 
@@ -143,12 +164,15 @@ static void say_broken(tl_model *m)
 tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
 {
     struct tl_elements *e = m->elements;
-    e->resting = e->any_steady && tl_steady_keeps(m);
+    const bool due = tl_elements_together_due(m);
+    e->resting = e->any_steady && !due && tl_steady_keeps(m);
     if (e->any_steady && !e->resting)
         tl_steady_bring(m);
     if (!e->resting || !e->all_steady)
         e->asked++;
-    const tl_status status = ask_all(m, failure);
+    tl_status status = due ? tl_elements_together(m, 0, true) : TL_OK;
+    if (status == TL_OK)
+        status = ask_all(m, failure);
     if (e->any_steady && !e->resting && status == TL_OK)
         tl_steady_take(m);
     if (status == TL_OK)

@@ -11,6 +11,7 @@
 #include "element/relay.h"
 #include "element/set.h"
 #include "element/steady.h"
+#include "model/rows.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -224,6 +225,7 @@ tl_status tl_elements_ready(tl_model *m)
     struct tl_elements *e = m->elements;
     if (!e)
         return TL_OK;
+    tl_rows_tidy(m); /* lists below hold rows of bodies */
     tl_elements_follow(m);
     tl_status status = tl_elements_lay_again(m);
     if (status != TL_OK)

@@ -13,8 +13,8 @@
 
 /* Limit: steps that one command may ask for. */
 #define MOST_STEPS 1000000000.0
-/* Bytes of a key. */
-#define KEY 16
+/* Bytes of a key or of a command's name. */
+#define KEY 24
 /* Bytes of a number. */
 #define NUMBER 64
 
@@ -49,6 +49,7 @@ static const struct {
     [TL_VIEW_FRICTION] = {"friction", JOINT | VALUE},
     [TL_VIEW_VTK] = {"write_vtk", 0},
     [TL_VIEW_SNAPSHOT] = {"snapshot", 0},
+    [TL_VIEW_SAFETY] = {"factor_of_safety", 0},
 };
 #define OPS (sizeof ops / sizeof ops[0])
 

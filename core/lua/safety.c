@@ -83,7 +83,7 @@ static tl_status on_trial(void *user, const tl_safety_trial *trial)
     lua_pushcfunction(L, call_trial);
     lua_pushvalue(L, AT_TRIAL);
     lua_pushlightuserdata(L, (void *)(uintptr_t)trial);
-    c->failed = tl_lua_call_reading(L, c->owner, 2) != LUA_OK;
+    c->failed = tl_lua_call_reading(L, c->owner, 2, 0) != LUA_OK;
     return c->failed ? TL_E_CANCELLED : TL_OK;
 }
 
@@ -232,7 +232,7 @@ static const tl_lua_key safety_results[] = {
     {"volume, direction", "", "of these, m3, and where they go, a unit vector; without any direction is nil"},
     {"mode", "",
      "\"slides\"; \"turns\" (its corners go farther by rotation than its centre goes); \"falls\" (nothing bears it); "
-     "\"holds\" without any"},
+     "\"yields\" (a deformable block is strained on and on); \"holds\" without any"},
     {"keyblock", "",
      "{factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is "
      "none, "

@@ -269,7 +269,9 @@ static const char *const failed_blocks[] = {"delete", "hold", NULL};
                  "processes that make trials at once; what is found is the same for any number", .def = {1.0},         \
                  .min = 1.0, .max = 256.0),                                                                            \
         TL_PARAM(TL_PARAM_BOOL, tl_safety, solids, "",                                                                 \
-                 "whether the strengths of deformable blocks' solids are divided, too", .def = {1.0})
+                 "whether the strengths of deformable blocks' solids are divided, too", .def = {1.0}),                 \
+        TL_PARAM(TL_PARAM_BOOL, tl_safety, elements, "",                                                               \
+                 "whether the strengths of elements, such as bolts, are divided, too", .def = {0.0})
 
 static const tl_param factor_of_safety_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_safety, from, "", "least factor that is tried", .def = {0.1}, .min = 0.05,

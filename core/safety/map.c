@@ -7,8 +7,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "cycle/meshes.h"
-#include "safety/ahead.h"
-#include "safety/trial.h"
+#include "safety/narrow.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,6 +23,7 @@ typedef struct mapping {
     int64_t last; /* of the grid */
     size_t point_capacity, gone;
     double volume; /* of what has gone */
+    tl_fall fall;  /* at the least factor that fails */
 } mapping;
 
 static double factor_at(const void *user, int64_t at)
@@ -94,29 +94,31 @@ static tl_status take_out(mapping *p, double factor, tl_fall *fall, bool *left)
     return status;
 }
 
-/* Finds the least factor from `at` on that fails; `*at` is beyond the last when all hold. */
-static tl_status next_failure(mapping *p, int64_t *at, tl_fall *fall)
+/* Keeps what fails at the least factor that does. */
+static tl_status take_trial(void *user, const tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_safety_trial trial;
-    tl_bracket b = {.lowest = *at, .last = p->last, .holds = *at - 1, .fails = p->last + 1, .width = 1};
-    tl_status status = TL_OK;
-    b.first = b.second = *at;
-    *fall = (tl_fall){.ids = NULL};
-    while (status == TL_OK) {
-        tl_fall here;
-        status = tl_ahead(&p->trials, &b, factor_at, p);
-        const int64_t next = tl_bracket_next(&b);
-        if (status != TL_OK || next < 0)
-            break;
-        status = tl_trials_try(&p->trials, factor_at(p, next), &trial, &here);
-        if (status != TL_OK)
-            break;
-        tl_bracket_take(&b, next, trial.holds != 0);
-        if (!trial.holds) {
-            tl_fall_free(fall);
-            *fall = here;
-        }
+    mapping *p = user;
+    if (trial->holds) {
+        tl_fall_free(fall);
+    } else {
+        tl_fall_free(&p->fall);
+        p->fall = *fall;
     }
+    return TL_OK;
+}
+
+/* Finds the least factor from `at` on that fails; `*at` is beyond the last when all hold. */
+static tl_status next_failure(mapping *p, int64_t *at)
+{
+    tl_bracket b = {.lowest = *at,
+                    .last = p->last,
+                    .holds = *at - 1,
+                    .fails = p->last + 1,
+                    .first = *at,
+                    .second = *at,
+                    .width = 1};
+    tl_fall_free(&p->fall);
+    const tl_status status = tl_narrow(&p->trials, &b, factor_at, take_trial, p);
     *at = b.fails;
     return status;
 }
@@ -129,18 +131,18 @@ void tl_safety_map_free(tl_safety_map *map)
     *map = (tl_safety_map){.ids = NULL};
 }
 
-static tl_status go_up(mapping *p, tl_fall *fall)
+static tl_status go_up(mapping *p)
 {
     const tl_safety *o = &p->trials.options;
     bool left = true;
     tl_status status = TL_OK;
     p->last = (int64_t)ceil((o->to - o->from) / o->step * (1 - 1e-12)); /* Constant: rounding of the quotient */
-    if (fall->count > 0)
-        status = take_out(p, 0, fall, &left);
+    if (p->fall.count > 0)
+        status = take_out(p, 0, &p->fall, &left);
     for (int64_t at = 0; status == TL_OK && left && at <= p->last;) {
-        status = next_failure(p, &at, fall);
+        status = next_failure(p, &at);
         if (status == TL_OK && at <= p->last)
-            status = take_out(p, factor_at(p, at), fall, &left);
+            status = take_out(p, factor_at(p, at), &p->fall, &left);
     }
     return status;
 }
@@ -148,9 +150,8 @@ static tl_status go_up(mapping *p, tl_fall *fall)
 tl_status tl_model_safety_map(tl_model *m, const tl_safety *given, tl_safety_map *map)
 {
     mapping p = {.map = map};
-    tl_fall fall;
     *map = (tl_safety_map){.ids = NULL};
-    tl_status status = tl_trials_begin(&p.trials, "safety_map", m, given, &fall);
+    tl_status status = tl_trials_begin(&p.trials, "safety_map", m, given, &p.fall);
     const tl_safety *o = &p.trials.options;
     if (status == TL_OK && (o->to - o->from) / o->step > MOST_FACTORS)
         status = tl_fail(&m->error, TL_E_ARGUMENT, "safety_map: step = %g makes more than %d factors from %g to %g",
@@ -158,13 +159,13 @@ tl_status tl_model_safety_map(tl_model *m, const tl_safety *given, tl_safety_map
     if (status == TL_OK)
         status = list_blocks(&p, m);
     if (status == TL_OK)
-        status = go_up(&p, &fall);
+        status = go_up(&p);
     map->undecided = (int32_t)p.trials.undecided;
     map->cycles = p.trials.cycles;
     map->wall = tl_clock() - p.trials.began;
     if (status != TL_OK)
         tl_safety_map_free(map);
-    tl_fall_free(&fall);
+    tl_fall_free(&p.fall);
     tl_trials_end(&p.trials);
     return status;
 }

@@ -6,8 +6,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "model/scope.h"
-#include "safety/ahead.h"
-#include "safety/trial.h"
+#include "safety/narrow.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,11 +30,12 @@ typedef struct search {
 static const char *const mode_names[] = {[TL_SAFETY_HOLDS] = "holds",
                                          [TL_SAFETY_SLIDES] = "slides",
                                          [TL_SAFETY_TURNS] = "turns",
-                                         [TL_SAFETY_FALLS] = "falls"};
+                                         [TL_SAFETY_FALLS] = "falls",
+                                         [TL_SAFETY_YIELDS] = "yields"};
 
 const char *tl_safety_mode_name(tl_safety_mode mode)
 {
-    return (unsigned)mode <= TL_SAFETY_FALLS ? mode_names[mode] : "?";
+    return (unsigned)mode <= TL_SAFETY_YIELDS ? mode_names[mode] : "?";
 }
 
 /* ---------------------------------------------------------------- keyblocks -------------- */
@@ -108,23 +108,17 @@ static tl_status list_trial(search *s, const tl_safety_trial *trial)
     return TL_OK;
 }
 
-/* Tries one factor of the grid. */
-static tl_status try_at(search *s, int64_t at)
+/* Keeps what fails at the least factor that does. */
+static tl_status take_trial(void *user, const tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_safety_trial trial;
-    tl_fall fall;
-    tl_status status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
-    if (status != TL_OK)
-        return status;
-    status = list_trial(s, &trial);
-    tl_bracket_take(&s->bracket, at, trial.holds != 0);
-    if (trial.holds && s->bracket.fails <= (int64_t)s->last) {
-        tl_fall_free(&fall);
-        return status;
+    search *s = user;
+    if (trial->holds && s->bracket.fails <= (int64_t)s->last) {
+        tl_fall_free(fall);
+    } else {
+        tl_fall_free(&s->fall);
+        s->fall = *fall;
     }
-    tl_fall_free(&s->fall);
-    s->fall = fall;
-    return status;
+    return list_trial(s, trial);
 }
 
 static int64_t clamped(const search *s, int64_t at)
@@ -169,22 +163,13 @@ static tl_status narrow(search *s)
     const int64_t middle = place_of(s, key > 0 && isfinite(key) ? key : 1);
     const int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
     const int64_t last = (int64_t)s->last;
-    tl_status status = TL_OK;
     s->bracket = (tl_bracket){.last = last,
                               .holds = -1,
                               .fails = last + 1,
                               .first = clamped(s, middle - width),
                               .second = clamped(s, middle + width),
                               .width = width};
-    while (status == TL_OK) {
-        status = tl_ahead(&s->trials, &s->bracket, factor_at, s);
-        const int64_t at = tl_bracket_next(&s->bracket);
-        if (at < 0)
-            break;
-        if (status == TL_OK)
-            status = try_at(s, at);
-    }
-    return status;
+    return tl_narrow(&s->trials, &s->bracket, factor_at, take_trial, s);
 }
 
 /* ---------------------------------------------------------------- result ----------------- */
@@ -218,7 +203,7 @@ static void take_fall(tl_safety_result *r, tl_fall *fall)
 
 static void tell(const search *s)
 {
-    static const char *const goes[] = {"", "slide", "turn", "fall"};
+    static const char *const goes[] = {"", "slide", "turn", "fall", "yield"};
     tl_safety_result *r = s->result;
     char what[160] = "";
     if (r->failing.count > 0)

@@ -4,17 +4,18 @@
  * slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
  * (cycle/relax.c) or something moves on.
  *
- * Two scales come from the model itself: u, how far its joints settle under what they bear, and N, the steps in which
- * the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its weight, so what
- * moves then slips. What is held by friction slips for a while and is slower from look to look. What is not held
- * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
- * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may. What elements hold
- * more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force would
- * bear what drives it after CAUGHT of its radius.
+ * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
+ * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
+ * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What is
+ * not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter,
+ * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may. What elements
+ * hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force
+ * would bear what drives it after CAUGHT of its radius.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
- * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is made again
- * with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
+ * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
+ * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
+ * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
  * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
@@ -107,6 +108,8 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
     tl_status status = tl_joints_weaken(copy, t->asked, t->which, factor);
     if (status == TL_OK && t->options.solids)
         status = tl_solids_weaken(copy, t->asked, factor);
+    if (status == TL_OK && t->options.elements)
+        status = tl_elements_weaken(copy, t->asked, factor);
     if (status == TL_OK && t->stiffness > 1)
         status = tl_joints_stiffen(copy, t->stiffness);
     return told(t, copy, status);
@@ -212,6 +215,7 @@ static tl_status choose_laws(tl_trials *t)
     }
     for (size_t k = 0; o->solids && m->zones && k < m->zones->solid_count; k++)
         some = some || tl_kind_has_strength(m->zones->solid[k].of.kind);
+    some = some || (o->elements && tl_elements_have_strength(m));
     if (status == TL_OK && !some)
         return say_unmarked(t);
     for (size_t i = 0; i < m->joint_law_count; i++)
@@ -316,6 +320,7 @@ typedef struct watch {
     int64_t looked; /* cycle of the last look */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
+    bool strained; /* ... for it is strained on and on */
     const char *why;
 } watch;
 
@@ -439,6 +444,13 @@ static uint32_t fastest_of(const watch *w, const tl_model *m)
     return fastest;
 }
 
+/* Sum of the sizes of forces that bear a body, N: of contacts and, of a deformable one, of what holds its points. */
+static double borne_by(const tl_model *m, uint32_t body)
+{
+    const tl_body_mesh *mesh = tl_mesh_of_body(m, body);
+    return mesh ? tl_mesh_whole_of(m, mesh).borne : m->cycle->contact_force[body];
+}
+
 /* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
  * While what is small falls, the rest may settle as fast, but not as far. */
 static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
@@ -466,14 +478,15 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
         tl_addends_put(&sum[2], own * gone.z);
         tl_addends_put(&ways, own * tl_v3_norm(gone));
         tl_addends_put(&turns, own * turned_of(m, l, body));
-        tl_addends_put(&bears, share * m->cycle->contact_force[body]);
+        tl_addends_put(&bears, share * borne_by(m, body));
         tl_addends_put(&weighs, own * tl_v3_norm(m->config.gravity));
     }
     fall->volume = tl_addends_sum(&volume);
     fall->way = tl_v3_unit(tl_v3(tl_addends_sum(&sum[0]), tl_addends_sum(&sum[1]), tl_addends_sum(&sum[2])));
-    fall->mode = tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
-                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)        ? TL_SAFETY_TURNS
-                                                                         : TL_SAFETY_SLIDES;
+    fall->mode = w->strained                                               ? TL_SAFETY_YIELDS
+                 : tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
+                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)          ? TL_SAFETY_TURNS
+                                                                           : TL_SAFETY_SLIDES;
     return TL_OK;
 }
 
@@ -481,7 +494,7 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 static double settles_now(const tl_model *copy)
 {
     tl_watch *w = tl_watch_begin(copy);
-    const double settles = w ? tl_watch_settlement(w, copy) : 0;
+    const double settles = w ? tl_watch_settlement(w, copy) + tl_elements_settlement(copy) : 0;
     if (w)
         tl_watch_end(w);
     return settles;
@@ -544,6 +557,7 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
         return TL_OK;
     if (fails)
         w->verdict = r->run.failing;
+    w->strained = fails && copy->cycle->fails_strained;
     if (copy->cycles > w->looked)
         looks(w, copy); /* the ways since the last look */
     tl_status status = list_fall(w, copy, fall);
@@ -598,7 +612,7 @@ static tl_status measure(tl_trials *t, int64_t settled)
         return tl_fail_memory(&t->asked->error);
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
-    t->settles = tl_watch_settlement(w, t->base);
+    t->settles = tl_watch_settlement(w, t->base) + tl_elements_settlement(t->base);
     t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
@@ -711,21 +725,26 @@ static tl_status make_stiffer(tl_trials *t, bool *usable)
     return status;
 }
 
-/* Makes a trial, with stiffer and stiffer joints while it rests and that may hang on how soft they are. */
-static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+/* Makes a trial that has come to rest again, with stiffer and stiffer joints while it rests, and may rest only because
+ * they are soft. */
+static tl_status confirm(tl_trials *t, tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_status status = make_one(t, factor, trial, fall);
+    const double factor = trial->factor;
     int64_t cycles = trial->cycles;
-    double before = 0;
-    bool usable = true;
-    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SLIPS, GROWN * before);) {
-        before = at->moved;
+    double moved = fall->moved, before = 0;
+    tl_status status = TL_OK;
+    for (tl_trials *at = t; trial->holds && moved > fmax(SLIPS, GROWN * before);) {
+        bool usable;
+        before = moved;
         status = make_stiffer(at, &usable);
         at = at->stiffer;
         if (status != TL_OK || !usable)
             break;
         tl_fall_free(fall);
         status = make_one(at, factor, trial, fall);
+        if (status != TL_OK)
+            break;
+        moved = at->moved;
         cycles += trial->cycles;
         t->cycles += trial->cycles;
     }
@@ -734,12 +753,19 @@ static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fa
     return status;
 }
 
-tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
-    *fall = (tl_fall){.ids = NULL};
-    tl_status status = TL_OK;
-    if (!take_made(t, factor, trial, fall))
-        status = make(t, factor, trial, fall);
+    tl_status status = make_one(t, factor, trial, fall);
+    trial->factor = factor;
+    fall->moved = t->moved;
+    if (status == TL_OK && t->confirms)
+        status = confirm(t, trial, fall);
+    return status;
+}
+
+/* Counts a trial, and tells of it. */
+static tl_status finish(tl_trials *t, tl_status status, const tl_safety_trial *trial, tl_fall *fall)
+{
     t->undecided += status == TL_OK && trial->undecided ? 1 : 0;
     if (status == TL_OK && t->options.on_trial) {
         tl_model_only_read(t->asked, true);
@@ -749,6 +775,30 @@ tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_
     if (status != TL_OK)
         tl_fall_free(fall);
     return status;
+}
+
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = TL_OK;
+    if (!take_made(t, factor, trial, fall))
+        status = make(t, factor, trial, fall);
+    return finish(t, status, trial, fall);
+}
+
+tl_status tl_trials_confirm(tl_trials *t, double factor, double moved, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.moved = moved};
+    *trial = (tl_safety_trial){.factor = factor, .holds = 1, .why = "at rest"};
+    const tl_status status = confirm(t, trial, fall);
+    return status == TL_OK && trial->cycles == 0 ? status : finish(t, status, trial, fall);
+}
+
+void tl_trials_confirm_all(tl_trials *t, bool all)
+{
+    if (t->confirms != all)
+        forget_made(t);
+    t->confirms = all;
 }
 
 void tl_trials_end(tl_trials *t)

@@ -13,6 +13,7 @@ typedef struct tl_fall {
     double volume; /* m3 */
     tl_vec3 way;   /* unit, or zero */
     tl_safety_mode mode;
+    double moved; /* how far a body had gone at the end, over how far joints settle */
     tl_id *small; /* what has failed before, and was deleted in the copy: smaller than least_volume */
     size_t small_count, small_capacity;
 } tl_fall;
@@ -39,6 +40,7 @@ typedef struct tl_trials {
     int64_t cycles;            /* made so far, of all copies */
     double began;              /* s, of the clock */
     size_t undecided;
+    bool confirms;         /* whether trials that rest are confirmed at once */
     tl_trial_ahead *ahead; /* [ahead_count], begun with `base` as it is */
     size_t ahead_count, ahead_capacity;
 } tl_trials;
@@ -52,6 +54,11 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall);
 /* Makes a trial. It fails: `fall` has what does. Small blocks that fail are deleted in its own copy only. */
 tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall);
+/* Makes a trial that has come to rest, with fall->moved = `moved`, again with stiffer joints, where it may hang on how
+ * soft they are. trial->cycles = 0: there was no need, and it holds. */
+tl_status tl_trials_confirm(tl_trials *t, double factor, double moved, tl_safety_trial *trial, tl_fall *fall);
+/* Whether all trials to come are confirmed at once. */
+void tl_trials_confirm_all(tl_trials *t, bool all);
 /* A trial at a factor that was made ahead, and not yet taken; or NULL. */
 tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor);
 void tl_trials_end(tl_trials *t);

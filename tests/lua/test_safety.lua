@@ -225,3 +225,32 @@ refused("joint 'A' has no law of its own whose strengths could be divided; give 
 part:joint("A", "coulomb", { kn = 1e9, ks = 1e9, friction = 5 })
 check.equal(part:factor_of_safety({ joints = "A" }).factor, math.huge) -- it is level
 check.near(part:factor_of_safety({ joints = { "*" } }).factor / expected, 1, 0.01)
+
+-- Strengths of elements: a block that hangs on a bolt of twice its weight, by the steel, by the grout, by a spring. Bolts keep their
+-- strengths unless these are asked for; a pretension may be above what is left of them.
+local HANGS = 25e3 -- N
+local function hanging(kind, params)
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { 100, 0, 0 }, max = { 101, 1, 2 }, density = 2500 })
+    m:blocks():fix()
+    m:generate("box", { min = { 100, 0, -1 }, max = { 101, 1, 0 }, density = 2500 })
+    m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 0 })
+    params.from, params.to = { 100.5, 0.5, -1 }, { 100.5, 0.5, 1.5 }
+    m:element(kind, params)
+    return m
+end
+for _, one in ipairs {
+    { "bolt", { yield = 2 * HANGS } },
+    { "bolt", { grout_strength = 2 * HANGS, plate_stiffness = 0 } },
+    { "bolt", { yield = 2 * HANGS, pretension = 1.9 * HANGS, rupture_strain = 1e5 } },
+    { "spring", { stiffness = 1e7, strength = 2 * HANGS, pretension = HANGS } },
+} do
+    local hung = hanging(one[1], one[2])
+    local was = hung:state_hash()
+    local free = hung:factor_of_safety { elements = true }
+    check.near(free.factor / 2, 1, 0.012)
+    check.equal(free.undecided, 0)
+    check.equal(hung:factor_of_safety({ elements = true, workers = 2 }).factor, free.factor)
+    check.equal(hung:factor_of_safety({}).factor, math.huge)
+    check.equal(hung:state_hash(), was)
+end

@@ -57,6 +57,8 @@ ENDLESS = {
     "VTK": 'local m = rock(9) m:cycle(1) say "ready" while true do m:write_vtk("out/run") end',
     "page": 'local m = rock(9) m:cycle(1) say "ready" while true do m:write_html("out/run", { block_fields = { '
             'twice = function(block) return 2 * block.volume end } }) end',
+    "factor of safety": 'local m = rock(5) say "ready" while true do m:factor_of_safety { to = 0.6, from = 0.1, resolution = 1e-3 } end',
+    "safety map": 'local m = rock(5) say "ready" while true do m:safety_map { from = 0.1, to = 0.6 } end',
     "blocks to a file": 'local m = rock(12) say "ready" while true do m:write_blocks("out/rock.json") end',
     "coroutine": 'local m = rock(3) local go = coroutine.wrap(function() while true do m:cycle(2) end end) say "ready" go()',
 }

@@ -157,6 +157,10 @@ TEST(a_search_that_is_stopped_leaves_the_model)
         CHECK_INT(tl_model_factor_of_safety(m, NULL, &result), TL_E_CANCELLED);
         CHECK_CONTAINS(tl_model_error(m)->text, "the model is as it was");
         CHECK(result.trials == NULL && result.failing.ids == NULL);
+        tl_safety_map map;
+        asked_before = k;
+        CHECK_INT(tl_model_safety_map(m, NULL, &map), TL_E_CANCELLED);
+        CHECK(map.ids == NULL && map.factor == NULL && map.curve == NULL);
         tl_model_interrupt_if(m, NULL);
         CHECK_INT(tl_state_hash(m, after), TL_OK);
         CHECK_TEXT(after, before);

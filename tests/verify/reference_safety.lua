@@ -6,7 +6,7 @@
 -- wedges: a block above planes A and B, behind a face and below an upper surface that meets their line `height` above the
 --   toe, in the origin; with a crack, in front of that. Hoek and Bray's wedge as a vector solution, with areas and volume
 --   by clipping half-spaces; HB_water and HB_dry also by the short solution (Wyllie and Mah, 4th edition, with exact
---   angles).
+--   angles). The water of `lifted` stands to its top and takes it off B: it slides on A.
 -- two_blocks: an active block pushes a passive one, shear at its limit on all three planes; the interface is vertical.
 --
 -- `load` is the resultant of water pressure, bolts and earthquake, N.
@@ -67,6 +67,10 @@ reference.wedges = {
         upper = { 0, 0 }, height = 20.0,
         friction = { 35, 35 }, cohesion = { 10000.0, 0.0 }, density = 2500, g = 10.0,
         load = { 0, 0, 0 }, volume = 32461.3452125, FS = 0.93715286208 },
+    { id = "FS.wedge.lifted", A = { 50, 130 }, B = { 60, 220 }, face = { 80, 175 },
+        upper = { 0, 0 }, height = 15.0,
+        friction = { 40, 40 }, cohesion = { 5000.0, 5000.0 }, density = 2500, g = 10.0,
+        load = { 809163.627168, -9248782.579918, 9298792.668548 }, volume = 766.175333208, FS = 0.144910158931 },
 }
 
 reference.two_blocks = {

@@ -18,7 +18,8 @@ typedef enum tl_safety_mode {
     TL_SAFETY_HOLDS,  /* nothing fails */
     TL_SAFETY_SLIDES, /* along what bears it */
     TL_SAFETY_TURNS,  /* its corners go farther by rotation than its centre does */
-    TL_SAFETY_FALLS   /* nothing bears it */
+    TL_SAFETY_FALLS,  /* nothing bears it */
+    TL_SAFETY_YIELDS  /* a deformable block is strained on and on */
 } tl_safety_mode;
 
 /* One trial: a copy of the model with its strengths divided by a factor. */
@@ -46,7 +47,8 @@ typedef struct tl_safety {
     int32_t solids;              /* strengths of solids are divided, too: 1 or 0 */
     tl_safety_trial_fn on_trial; /* after each trial, or NULL; not TL_OK ends the search. The model may only be read */
     void *user;
-    int64_t workers; /* processes that make trials at once, [1, 256]: what is found is the same for any number */
+    int64_t workers;  /* processes that make trials at once, [1, 256]: what is found is the same for any number */
+    int32_t elements; /* strengths of elements are divided, too: 1 or 0 */
 } tl_safety;
 
 /* Blocks that failed in a trial, or that went before they could be asked for. */
@@ -92,14 +94,14 @@ typedef struct tl_safety_map {
 } tl_safety_map;
 
 /* Finds the factor by which strengths may be divided before the model does not come to rest any more. Strengths are
- * what laws and solids mark with TL_PARAM_STRENGTH and the like. Trials are made on copies: the model stays as it is.
- * TL_E_ARGUMENT for options out of their ranges and for laws without strengths. TL_E_STATE when nothing is free,
- * something is driven or the model moves, or when
- * other threads run beside `workers` > 1. TL_E_CANCELLED on an interrupt. */
+ * what laws, solids and, when asked for, elements mark with TL_PARAM_STRENGTH and the like. Trials are made on copies:
+ * the model stays as it is. TL_E_ARGUMENT for options out of their ranges and for laws without strengths. TL_E_STATE
+ * when nothing is free, something is driven or the model moves, or when other threads run beside `workers` > 1.
+ * TL_E_CANCELLED on an interrupt. */
 TL_API tl_status tl_model_factor_of_safety(struct tl_model *model, const tl_safety *options, tl_safety_result *result);
 /* The same for every block: the factor goes up by steps, and what has failed is deleted or held before it goes on. */
 TL_API tl_status tl_model_safety_map(struct tl_model *model, const tl_safety *options, tl_safety_map *map);
-/* "holds", "slides", "turns" or "falls". */
+/* "holds", "slides", "turns", "falls" or "yields". */
 TL_API const char *tl_safety_mode_name(tl_safety_mode mode);
 /* Free the lists of a result and empty it. */
 TL_API void tl_safety_free(tl_safety_result *result);

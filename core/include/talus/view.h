@@ -41,7 +41,8 @@ typedef enum tl_view_op {
     TL_VIEW_CUT,      /* all visible blocks, by a plane of `joint` */
     TL_VIEW_FRICTION, /* `value`, degrees, of `joint` */
     TL_VIEW_VTK,      /* a frame for ParaView */
-    TL_VIEW_SNAPSHOT  /* the model saved */
+    TL_VIEW_SNAPSHOT, /* the model saved */
+    TL_VIEW_SAFETY    /* its factor of safety, found on copies */
 } tl_view_op;
 
 /* Longest name of a joint in a command, bytes with the 0; as many block ids as it can have. */

@@ -172,9 +172,6 @@ static tl_status create(const void *given, void **self, tl_report *report)
                          p->grout_strength);
     if (!(p->grouted_from < p->grouted_to))
         return tl_refuse(report, "grouted_from = %g must be below grouted_to = %g", p->grouted_from, p->grouted_to);
-    if (p->pretension > fmin(p->yield, p->plate_stiffness > 0 ? p->plate_strength : 0))
-        return tl_refuse(report, "pretension = %g N is above what steel (%g N) and plate (%g N) bear", p->pretension,
-                         p->yield, p->plate_stiffness > 0 ? p->plate_strength : 0);
     return tl_keep(p, sizeof *p, self, report);
 }
 
@@ -290,6 +287,11 @@ static tl_status place(const tl_element_host *host, const void *given)
     if (!(distance(p->from, p->to) > 0))
         return host->fail(host, TL_E_ARGUMENT, "from and to are the same point (%g, %g, %g)", p->from.x, p->from.y,
                           p->from.z);
+    /* Strengths may be less later on: the bolt yields then. */
+    const double plate = p->plate_stiffness > 0 ? p->plate_strength : 0;
+    if (p->pretension > fmin(p->yield, plate))
+        return host->fail(host, TL_E_ARGUMENT, "pretension = %g N is above what steel (%g N) and plate (%g N) bear",
+                          p->pretension, p->yield, plate);
     const tl_line_node *line;
     tl_line_node at[TL_ELEMENT_NODES];
     tl_element_node nodes[TL_ELEMENT_NODES];

@@ -24,7 +24,7 @@ static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_REAL, params, pretension, "N", "Tension when installed; below 0 it presses.", .min = -1e50,
              .max = 1e50),
     TL_PARAM(TL_PARAM_REAL, params, strength, "N", "Force at which the spring yields; without it, it never does.",
-             .flags = TL_PARAM_OPTIONAL, .max = 1e50)};
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH, .max = 1e50)};
 
 enum { AXIAL, SLIP, DAMPER };
 

@@ -1,0 +1,50 @@
+-- Factors of safety of random wedges and slopes: limit equilibrium where it holds, and no difference by units, place, attitude, order or
+-- threads. tests/verify/long/safety.lua tries many more.
+local check = require "check"
+local models = require "safety_models"
+
+for seed = 1, check.cases(20) do
+    check.holds(models.compare_wedge(seed))
+end
+for seed = 1, check.cases(4) do
+    check.holds(models.compare_slope(seed))
+end
+
+-- Nothing asked changes the model, whatever ends a search; what is not decided is told.
+local function ends(model, least_volume)
+    local before = model:state_hash()
+    for verb, options in pairs { factor_of_safety = { resolution = 0.05, least_volume = least_volume }, safety_map = { step = 0.5 } } do
+        options.from, options.to = 0.5, 3
+        local at, last = 0, 0
+        repeat
+            at = at + 1
+            local calls = 0
+            options.on_trial = function()
+                calls = calls + 1
+                if calls == at then
+                    error("enough", 0)
+                end
+            end
+            local good, message = pcall(model[verb], model, options)
+            check.holds(good or message == "enough", tostring(message))
+            check.equal(model:state_hash(), before)
+            last = good and at or last
+        until good or at == 6
+        check.holds(at > 1, "a search has trials")
+    end
+end
+ends(models.wedge(models.draw_wedge(1)), 0)
+ends(models.slope(models.draw_slope(1)), 0.1)
+
+-- What is not decided counts as failing.
+local model = models.wedge(models.draw_wedge(1))
+for _, workers in ipairs { 1, 2 } do
+    local some, undecided = model:factor_of_safety { max_cycles = 60, from = 0.5, to = 3, workers = workers }, 0
+    for _, trial in ipairs(some.trials) do
+        check.equal(trial.undecided, trial.why == "undecided")
+        check.holds(not (trial.undecided and trial.holds), "what is undecided counts as failing")
+        undecided = undecided + (trial.undecided and 1 or 0)
+    end
+    check.equal(some.undecided, undecided)
+    check.holds(undecided > 0, "60 steps do not decide all trials")
+end
