@@ -159,7 +159,7 @@ static const tl_lua_key keys[] = {
     {"heads", "list of {inside = {min = {x, y, z}, max = {x, y, z}}, head = number}",
      "likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box"},
     {"drains", "list of {{x, y, z}, {x, y, z}, radius}", "likewise: holes of a radius, m, in which the pressure is 0"},
-    {"steady", "boolean", "likewise: true, when left out: water is in balance; false: joints store water"},
+    {"steady", "true or false", "likewise: true, when left out, for water in balance; false: joints store water"},
     {"every", "number", "likewise: steps between two solutions of steady flow; 100 when left out"},
     {"bulk", "number", "likewise: bulk modulus of water that is stored, Pa; 2e9 when left out"},
     {"initial_head", "number", "likewise: head at the beginning where flow is not steady; without it pressure is 0, m"},
@@ -185,7 +185,7 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .arguments = 2,
      .method = model_water},
     {.name = "flow",
-     .usage = "result = model:flow()",
+     .usage = "model:water(\"flow\", {aperture = 2e-4, steady = false}); result = model:flow()",
      .doc =
          "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
          "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "

@@ -2034,8 +2034,8 @@ function Model:elements(options) end
 ---@field maximum? number likewise: largest aperture that counts; 2e-3 when left out
 ---@field viscosity? number likewise, Pa s; 1e-3 when left out
 ---@field heads? { inside: { min: talus.Vector, max: talus.Vector }, min: talus.Vector, max: talus.Vector, head: number }[] likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box
----@field drains? any likewise: holes of a radius, m, in which the pressure is 0
----@field steady? any likewise: true, when left out: water is in balance; false: joints store water
+---@field drains? (talus.Vector|number)[][] likewise: holes of a radius, m, in which the pressure is 0
+---@field steady? boolean likewise: true, when left out, for water in balance; false: joints store water
 ---@field every? number likewise: steps between two solutions of steady flow; 100 when left out
 ---@field bulk? number likewise: bulk modulus of water that is stored, Pa; 2e9 when left out
 ---@field initial_head? number likewise: head at the beginning where flow is not steady; without it pressure is 0, m
@@ -2053,9 +2053,26 @@ function Model:elements(options) end
 ---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 function Model:water(name, options) end
 
+---@class (exact) talus.FlowOptions
+---@field aperture number m, in (0, 1]: Hydraulic aperture of walls that just touch.
+---@field residual? number m, in (0, 1], default 2e-05: Least aperture, of a joint that is pressed.
+---@field maximum? number m, in (0, 1], default 0.002: Largest aperture that counts.
+---@field viscosity? number Pa s, in (0, 1e+50], default 0.001: Of the water.
+---@field unit_weight? number N/m3, in (0, 1e+50], default 9810: Of the water.
+---@field bulk? number Pa, in (0, 1e+50], default 2000000000: Bulk modulus of the water, where flow is not steady.
+---@field initial_head? number m: Head at the beginning where flow is not steady; without it the pressure begins at 0.
+---@field drain_gap? number m, in (0, 1e+50], default 0.05: Mean opening beyond which a joint is dry.
+---@field apertures? string Other apertures, of joints, sets or planes: "A=1e-4,B:2=3e-4", m; the last that fits counts.
+---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
+---@field heads? talus.Vector[] m: Three points a head: least and largest corner of a box, and {head, 0, 0}.
+---@field drains? talus.Vector[] m: Three points a drain: both ends, and {radius, 0, 0}.
+---@field every? integer in [1, 1e+09], default 100: Steps between two solutions of steady flow.
+---@field steady? boolean default true: Whether water is in balance, or also stored, with every = 1.
+
 --- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain. element 'flow' Water that flows in joints: model:water("flow").
 ---
----     result = model:flow()
+---     model:water("flow", {aperture = 2e-4, steady = false}); result = model:flow()
+---@return { closed: integer, drains: table, heads: table, joints: talus.Elements }
 function Model:flow() end
 
 ---@class (exact) talus.FactorOfSafetyOptions

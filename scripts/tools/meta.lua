@@ -90,6 +90,7 @@ local WORDS = {
     ["function(zone)"] = "fun(zone: talus.Zone): any",
     ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
     ["list of tables"] = "table[]",
+    ["list of {{x, y, z}, {x, y, z}, radius}"] = "(talus.Vector|number)[][]",
     ["function(element)"] = "fun(element: talus.Element): any",
     ["number or function(x, y, z)"] = "number|fun(x: number, y: number, z: number): number",
     ["name or list of names"] = "string|string[]",
@@ -369,17 +370,15 @@ local function signature(call, rows, options, plugins)
 end
 
 -- What the call gives on the small model; the topic's first call that gives something.
-local function try(calls)
+local function try(calls, usage)
     for _, call in ipairs(calls) do
         if call.result and call.arguments:match('^"out/') then -- there is no such file
             return nil, call.result
         elseif call.result and not call.text:match('"%u%u+"') then
             local environment = build()
-            for _, before in ipairs(calls) do -- as in "model:profile(true); result = model:profile()"
-                if before == call then
-                    break
-                end
-                pcall(assert(load(before.text, "=usage", "t", environment)))
+            local before = usage:sub(1, usage:find(call.text, 1, true) - 1) -- as in "model:profile(true); result = model:profile()"
+            for text in (before:gsub("  or  ", "; ") .. "; "):gmatch("(.-); ") do
+                pcall(load(text, "=usage", "t", environment) or error)
             end
             local chunk = load(call.text, "=usage", "t", environment)
             local good, message = pcall(chunk or error)
@@ -486,7 +485,7 @@ local function put_function(name, topic)
         put("\n---@class (exact) %s", options)
         put_options(rows)
     end
-    local value, of = try(calls)
+    local value, of = try(calls, topic.head[1])
     local result = value ~= nil and seen_type(value) or RESULT_WORDS[of]
     if value == nil and result and table.concat(topic.head, " "):match("; nil when") then
         result = result .. "?"
