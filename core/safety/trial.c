@@ -8,9 +8,9 @@
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
  * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What is
  * not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter,
- * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may. What elements
- * hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force
- * would bear what drives it after CAUGHT of its radius.
+ * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may. What
+ * elements hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of
+ * their force would bear what drives it after CAUGHT of its radius.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
  * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
@@ -67,7 +67,7 @@
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
 /* Tolerance: way over the radius of a body within which elements that tighten are to stop it. */
-#define CAUGHT 0.1
+#define CAUGHT 0.03
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */

@@ -290,6 +290,10 @@ for _, grouted in ipairs { 0.8, 0 } do
     figures.relative(name .. "equilibrium", r.factor, EQUILIBRIUM, 0.002)
     figures.relative(name .. "formula", r.factor, PASSIVE, 0.005)
 end
+local divided = prism({ yield = force, active_length = 100, rupture_strain = 10 }, active.friction):factor_of_safety {
+    resolution = FINE, elements = true }
+figures.relative("elements divided by the search: equilibrium", divided.factor, EQUILIBRIUM, 0.002)
+figures.relative("elements divided by the search: formula", divided.factor, PASSIVE, 0.005)
 for _, share in ipairs { 0.99, 1.01 } do
     local F = PASSIVE * share
     local friction = math.deg(math.atan(math.tan(math.rad(active.friction)) / F))

@@ -156,7 +156,7 @@ for _, one in ipairs(reference.wedges) do
     end
 end
 
--- The load of HB_bolt by anchors: they are soft, so their pull stays what it was, and go through the wedge into held rock.
+-- The load of HB_bolt by anchors through the wedge into held rock: they yield at the pull that they have, so it stays.
 figures.case("FS.wedge.anchors", "The wedge whose load is that of anchors, with six anchors in the place of the load.",
     "Hoek and Bray 1977")
 for _, one in ipairs(reference.wedges) do
@@ -172,9 +172,9 @@ for _, one in ipairs(reference.wedges) do
                 local at = block[1].centroid[i] + (k % 3 - 1) * 2 * side[i] + (i == 3 and 2 * (k // 3) or 0)
                 from[i], to[i] = at - 60 * along[i], at + 60 * along[i]
             end
-            list[#list + 1] = { from = from, to = to, pretension = pull / 6, diameter = 0.1, young = 1e9, yield = 1e10,
+            list[#list + 1] = { from = from, to = to, pretension = 0.999 * pull / 6, diameter = 0.1, yield = pull / 6,
                 grouted_from = 0.9, grout_strength = 1e9, plate_strength = 1e10, plate_stiffness = 1e9, rupture_strain = 10,
-                active_length = 100, spacing = 0.5 }
+                active_length = 100, spacing = 1 }
         end
         model:element("bolt", list)
         local r = model:factor_of_safety { resolution = FINE }

@@ -212,8 +212,10 @@ static void warn(const tl_element_host *host, const params *p, const tl_line_nod
         empty += at[i].passes && gap > p->diameter ? gap : 0;
     }
     if (crossings == 0)
-        host->log(host, "the bolt from (%g, %g, %g) to (%g, %g, %g) lies in one body, so it holds nothing", p->from.x,
-                  p->from.y, p->from.z, p->to.x, p->to.y, p->to.z);
+        host->log(
+            host,
+            "the bolt from (%g, %g, %g) to (%g, %g, %g) lies in one body, so it holds nothing unless that deforms",
+            p->from.x, p->from.y, p->from.z, p->to.x, p->to.y, p->to.z);
     if (empty > 0)
         host->log(host, "the bolt from (%g, %g, %g) to (%g, %g, %g) passes through a void of %g m: it is free there",
                   p->from.x, p->from.y, p->from.z, p->to.x, p->to.y, p->to.z, empty);
@@ -341,9 +343,9 @@ typedef struct crossing {
 /* A bolt where its nodes are now. Node k of the chain is row[k] of the batch. */
 typedef struct bolt {
     chain c;
-    uint32_t row[TL_ELEMENT_NODES];
-    double h[TL_ELEMENT_NODES]; /* of segments, when installed */
-    tl_vec3 along[TL_ELEMENT_NODES];
+    uint32_t row[CHAIN_ROOM];
+    double h[CHAIN_ROOM]; /* of segments, when installed */
+    tl_vec3 along[CHAIN_ROOM];
     crossing cross[TL_ELEMENT_NODES / 2]; /* each has nodes of its own on either side */
     uint32_t crossings;
 } bolt;

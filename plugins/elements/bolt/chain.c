@@ -90,26 +90,46 @@ static bool is_balanced(chain *c)
     return off <= BALANCED * most + ROUNDED * stiffest * moved;
 }
 
-/* The step of w of a Newton pass: elimination down the three bands, and back. */
+/* What is left of the nodes on one side of a node when they are eliminated. */
+typedef struct side_left {
+    double before, alone, part, carried; /* N/m of the segment to it; shares of that and of the step; N / (N/m) */
+} side_left;
+
+/* Eliminates node k, whose next segment has the stiffness `after`: its step is step[k] + over[k] times that of the next
+ * node. */
+static inline void eliminate(const chain *c, uint32_t k, double own, double after, side_left *r, double *step,
+                             double *over)
+{
+    own += r->before * r->alone;
+    const double pivot = own + after, inverse = pivot > 0 ? 1 / pivot : 0;
+    r->carried = c->off[k] + r->part * r->carried;
+    step[k] = r->carried * inverse;
+    r->part = over[k] = after * inverse;
+    r->alone = own * inverse;
+    r->before = after;
+}
+
+/* The step of w of a Newton pass: elimination in the three bands from both ends to the middle, and back. */
 static void find_step(const chain *c, double *step)
 {
-    double over[TL_ELEMENT_NODES], inverse[TL_ELEMENT_NODES]; /* upper band over the pivot, 1 over the pivot */
-    double before = 0, part = 0, alone = 1, carried = 0;
-    const uint32_t n = c->count;
-    for (uint32_t k = 0; k < n; k++) {
-        const double after = k + 1 < n ? c->tension_tangent[k] : 0;
-        /* what is left of the segment before when all nodes before it are eliminated */
-        const double own = c->grout_tangent[k] + (k == 0 ? c->plate_tangent : 0) + before * alone;
-        const double pivot = own + after;
-        inverse[k] = pivot > 0 ? 1 / pivot : 0;
-        carried = c->off[k] + part * carried;
-        step[k] = carried * inverse[k];
-        part = over[k] = after * inverse[k];
-        alone = own * inverse[k];
-        before = after;
+    double over[TL_ELEMENT_NODES];
+    const uint32_t n = c->count, middle = n / 2;
+    const double *grout = c->grout_tangent, *steel = c->tension_tangent;
+    side_left left = {0, 1, 0, 0}, right = {0, 1, 0, 0};
+    for (uint32_t k = 0; k < middle; k++) {
+        const uint32_t j = n - 1 - k;
+        eliminate(c, k, grout[k] + (k == 0 ? c->plate_tangent : 0), steel[k], &left, step, over);
+        if (j > middle)
+            eliminate(c, j, grout[j], steel[j - 1], &right, step, over);
     }
-    for (uint32_t k = n - 1; k-- > 0;)
+    const double own = grout[middle] + (middle == 0 ? c->plate_tangent : 0);
+    const double pivot = own + left.before * left.alone + right.before * right.alone;
+    const double carried = c->off[middle] + left.part * left.carried + right.part * right.carried;
+    step[middle] = pivot > 0 ? carried / pivot : 0;
+    for (uint32_t k = middle; k-- > 0;)
         step[k] += over[k] * step[k + 1];
+    for (uint32_t k = middle + 1; k < n; k++)
+        step[k] += over[k] * step[k - 1];
 }
 
 /* Goes a part of a step on from `from`. Gives the unbalance along the step, J, which falls to 0 at the best part. */

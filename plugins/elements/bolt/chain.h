@@ -6,23 +6,26 @@
 
 #include <stdbool.h>
 
+/* Cost only: so many nodes have room. Columns of 4096 bytes would all fall into the same lines of the cache. */
+#define CHAIN_ROOM (TL_ELEMENT_NODES + 24)
+
 /* Segment k goes from node k to the next. */
 typedef struct chain {
     uint32_t count;
-    double w[TL_ELEMENT_NODES], rock[TL_ELEMENT_NODES], slip[TL_ELEMENT_NODES]; /* m */
-    double hold[TL_ELEMENT_NODES];                                              /* N/m, of the grout */
-    double bond[TL_ELEMENT_NODES], residual[TL_ELEMENT_NODES];                  /* N */
-    bool worn[TL_ELEMENT_NODES];
-    double stiff[TL_ELEMENT_NODES], even[TL_ELEMENT_NODES]; /* N/m, of segments: E A / h and E A / gauge */
-    double plastic[TL_ELEMENT_NODES], limit[TL_ELEMENT_NODES];
-    double gauge[TL_ELEMENT_NODES];        /* m, over which the strain counts */
+    double w[CHAIN_ROOM], rock[CHAIN_ROOM], slip[CHAIN_ROOM]; /* m */
+    double hold[CHAIN_ROOM];                                  /* N/m, of the grout */
+    double bond[CHAIN_ROOM], residual[CHAIN_ROOM];            /* N */
+    bool worn[CHAIN_ROOM];
+    double stiff[CHAIN_ROOM], even[CHAIN_ROOM]; /* N/m, of segments: E A / h and E A / gauge */
+    double plastic[CHAIN_ROOM], limit[CHAIN_ROOM];
+    double gauge[CHAIN_ROOM];              /* m, over which the strain counts */
     double seat, plate_stiff, plate_limit; /* the plate is at node 0 */
     double pull;                           /* N, by which the mouth is pulled out */
     /* the answer: forces, forces that there would be without a limit, and what is left of the stiffness */
-    double grout[TL_ELEMENT_NODES], grout_trial[TL_ELEMENT_NODES], grout_tangent[TL_ELEMENT_NODES];
-    double tension[TL_ELEMENT_NODES], tension_trial[TL_ELEMENT_NODES], tension_tangent[TL_ELEMENT_NODES];
+    double grout[CHAIN_ROOM], grout_trial[CHAIN_ROOM], grout_tangent[CHAIN_ROOM];
+    double tension[CHAIN_ROOM], tension_trial[CHAIN_ROOM], tension_tangent[CHAIN_ROOM];
     double plate, plate_trial, plate_tangent;
-    double off[TL_ELEMENT_NODES]; /* N, unbalance of the steel */
+    double off[CHAIN_ROOM]; /* N, unbalance of the steel */
 } chain;
 
 /* As fmax and fmin, which compilers do not put inline for the sake of NaN. */
