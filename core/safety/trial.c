@@ -15,8 +15,12 @@
  * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
  * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
- * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
- * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone far. While joints settle and
+ * blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
+ *
+ * Where contacts chatter, forces need thousands of steps to balance while nothing moves. So a trial also rests in which
+ * no body has moved by STILL u in STILLS looks in a row. A body whose unbalanced force is e of its weight goes by
+ * e / 2 (w t)^2 u in a time t, with its frequency w. Less than STILL u in a look means an e below RESTS.
  *
  * What fails and is smaller than least_volume is deleted in the copy, and the trial goes on with the rest.
  *
@@ -52,8 +56,13 @@
 #define RESTS 1e-4
 /* Tolerance: local unbalanced force ratio above which a model that moves is not at rest. */
 #define MOVES 1e-2
-/* Tolerance: way over u from which on a body is watched, and from which on it fails anyway. */
+/* Tolerance: way over u from which on a body is watched. */
 #define SUSPECT 10.0
+/* Tolerance: way over u, or if less over the radius of the largest body, from which on a relaxation's verdict counts.
+ * In cut rock blocks have slipped by 15 u, a hundredth of their size, and stood still. */
+#define CERTAIN 30.0
+#define CERTAIN_SIZE 0.05
+/* Tolerance: way over u from which on a body fails anyway. */
 #define FAR 300.0
 /* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
 #define SLIPS 1.0
@@ -66,6 +75,9 @@
 #define GROWS 4
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
+/* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests. */
+#define STILL 0.005
+#define STILLS 4
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
 #define STEPS_A_BLOCK 16
 /* Tolerance: speed over that of the fastest body that fails, and way likewise, from which on another goes with it. */
@@ -311,6 +323,8 @@ typedef struct watch {
     const tl_trials *t;
     look *look;     /* [bodies] */
     int64_t looked; /* cycle of the last look */
+    int32_t still;  /* looks in a row in which all bodies stood still */
+    bool trial;     /* of a trial, not of a first copy */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     bool strained; /* ... for it is strained on and on */
@@ -324,11 +338,18 @@ static tl_status on_step(void *user, tl_model *copy)
     return tl_model_interrupted(w->t->asked) ? TL_E_CANCELLED : TL_OK;
 }
 
-/* Looks at all bodies; true when some one fails. */
+/* Whether all bodies have stood still in so many looks. */
+static bool stands_still(const watch *w)
+{
+    return w->trial && w->still >= STILLS;
+}
+
+/* Looks at all bodies; true when some one fails, or all stand still. */
 static bool looks(void *user, tl_model *copy)
 {
     watch *w = user;
     const double settles = w->t->settles;
+    bool still = true;
     w->looked = copy->cycles;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++) {
         look *l = &w->look[body];
@@ -340,13 +361,15 @@ static bool looks(void *user, tl_model *copy)
         l->grows = grows ? l->grows + 1 : 0;
         l->last = u;
         l->way = way;
+        still = still && way <= STILL * settles;
         if (l->grows < GROWS && far <= FAR * settles)
             continue;
         if (!w->fails)
             w->why = l->grows >= GROWS ? "goes on" : "far";
         w->fails = true;
     }
-    return w->fails;
+    w->still = still ? w->still + 1 : 0;
+    return w->fails || stands_still(w);
 }
 
 static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
@@ -454,14 +477,23 @@ static double settles_now(const tl_model *copy)
     return settles;
 }
 
+static double largest_radius(const tl_model *m)
+{
+    double largest = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        largest = fmax(largest, tl_body_is_free(m, body) ? m->bodies.radius[body] : 0);
+    return largest;
+}
+
 /* Whether the verdict of a relaxation is more than the settling of its joints. */
 static bool confirmed(const watch *w, const tl_model *copy, tl_id failing)
 {
     const double settles = w->t->measured ? w->t->settles : settles_now(copy);
+    const double least = fmax(SUSPECT * settles, fmin(CERTAIN * settles, CERTAIN_SIZE * largest_radius(copy)));
     bool far = copy->cycle->fails_strained;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         if (copy->bodies.id[body] == failing)
-            far = far || gone_of(w, copy, body) > SUSPECT * settles;
+            far = far || gone_of(w, copy, body) > least;
     return far;
 }
 
@@ -483,6 +515,7 @@ static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
         return status;
     if (!watch_begin(&next, w->t, copy))
         return tl_fail_memory(&w->t->asked->error);
+    next.trial = w->trial;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         for (size_t row = 0; row < before; row++)
             if (old[row].body == next.look[body].body)
@@ -499,7 +532,7 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
     const tl_trials *t = w->t;
     const tl_solve_reason reason = r->run.reason;
     const bool left = trial->cycles < t->options.max_cycles;
-    trial->holds = reason == TL_SOLVE_REST;
+    trial->holds = reason == TL_SOLVE_REST || (!w->fails && stands_still(w));
     if (reason == TL_SOLVE_OVERLAP)
         return tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r->message,
                        tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
@@ -529,6 +562,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
+    w.trial = !leaps;
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
         tl_relax_result r;
@@ -595,15 +629,6 @@ tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
     return status;
 }
 
-/* Before the first rest only the size of bodies says what is far. */
-static double first_scale(const tl_model *m)
-{
-    double largest = 0;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        largest = fmax(largest, tl_body_is_free(m, body) ? m->bodies.radius[body] : 0);
-    return largest / SUSPECT;
-}
-
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall)
 {
     *t = (tl_trials){.what = what, .asked = m, .stiffness = 1, .began = tl_clock()};
@@ -630,7 +655,7 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
         return status;
     tl_safety_trial trial;
     t->window = 100;
-    t->settles = first_scale(t->base);
+    t->settles = largest_radius(t->base) / SUSPECT; /* before the first rest only the size of bodies says what is far */
     status = settle(t, t->base, true, &trial, fall);
     return status == TL_OK && trial.holds ? measure(t, trial.cycles) : status;
 }
