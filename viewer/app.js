@@ -1,8 +1,10 @@
 // The state of the page: what is changed decides what is made anew; the rest of the time pictures are averaged.
 // @ts-check
+import {sheetMesh} from "./buffers.js";
 import {Camera} from "./camera.js";
 import {category, colourBlocks, colourContacts, colourZones, legendText} from "./colours.js";
 import {byId, say} from "./dom.js";
+import {elementsFor} from "./elements.js";
 import {Model} from "./frames.js";
 import {arrowsFor, contactSheets} from "./glyphs.js";
 import {SAMPLES, makeGpu, noGpu} from "./gpu.js";
@@ -251,19 +253,22 @@ export class App {
         }
         gpu.table("colour", c.colours);
         gpu.table("palette", new Uint8Array(c.palette.flatMap((p) => [...p, 255])), c.palette.length);
-        gpu.caps.set(this.plane ? capSheets(this.cuts, c.colours, this.plane.normal) : []);
+        gpu.caps.set(this.plane ? sheetMesh(capSheets(this.cuts, c.colours, this.plane.normal)) : null);
         this.legends = [c.legend];
         this.note = "";
         const crosses = this.paintZones(frame, shown, c);
         const contacts = view.contacts === "" ? null : colourContacts(model, frame, view.contacts);
-        gpu.sheets.set([
-            ...(contacts ? contactSheets(model, frame, shown, contacts.colour, this.plane, view.joint) : []), ...crosses
-        ]);
+        const elements = elementsFor(model, frame, shown, view.elements, this.plane, this.reach());
+        gpu.sheets.set(sheetMesh([
+            ...(contacts ? contactSheets(model, frame, shown, contacts.colour, this.plane, view.joint) : []),
+            ...crosses, ...elements.sheets
+        ]));
         if (contacts) this.legends.push(contacts.legend);
+        this.legends.push(...elements.legends);
         const arrows = view.arrows === ""
             ? null
             : arrowsFor(model, frame, shown, view.arrows, view.motion, this.plane, this.cuts, view.dark);
-        gpu.arrows.set(arrows?.arrows ?? []);
+        gpu.arrows.set([...elements.rods, ...(arrows?.arrows ?? [])]);
         if (arrows) {
             const unit = view.arrows === "force" ? "N" : view.arrows === "velocity" ? "m/s" : "m";
             this.note += this.note && ", ";

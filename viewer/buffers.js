@@ -1,15 +1,16 @@
-// Vertex buffers of the picture: all blocks in one, sheets (polygons) and arrows in others.
+// Vertex buffers of the picture: all blocks in one, triangles (meshes and polygons) and arrows in others.
 // @ts-check
+import {triple} from "./math.js";
 
 /** @typedef {import("./frames.js").Model} Model */
 /**
- * @typedef {{place: number[], normal: number[], colour: number[], flat: boolean, name: number}} Sheet corners x y z of
- *   a convex polygon
+ * @typedef {{place: number[], normal: number[], colour: number[], colours?: number[][], flat: boolean, name: number}}
+ *   Sheet corners x y z of a convex polygon; colours: of the corners
  */
 /** @typedef {{tail: number[], way: number[], width: number, colour: number[], name: number}} Arrow */
 
-const BLOCK_BYTES = 28, SHEET_BYTES = 36;
-export const MESH_BYTES = 32; // of a corner
+const BLOCK_BYTES = 28, MESH_BYTES = 32; // of a corner
+const WHOLE_EDGES = 1e30;                // size of triangles whose edges do not fade
 
 /**
  * All blocks' faces as triangles. The last corner of a triangle tells its normal and name, so faces share
@@ -110,47 +111,56 @@ function attribute(gl, at, size, type, stride, offset) {
     else gl.vertexAttribPointer(at, size, type, type !== gl.FLOAT, stride, offset);
 }
 
-/** Convex polygons as triangles. @param {WebGL2RenderingContext} gl */
-export function sheetBuffer(gl) {
-    const array = gl.createVertexArray(), buffer = gl.createBuffer();
-    gl.bindVertexArray(array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    attribute(gl, 0, 3, gl.FLOAT, SHEET_BYTES, 0);
-    attribute(gl, 1, 3, gl.FLOAT, SHEET_BYTES, 12);
-    attribute(gl, 2, 4, gl.UNSIGNED_BYTE, SHEET_BYTES, 24);
-    attribute(gl, 3, 1, gl.UNSIGNED_INT, SHEET_BYTES, 28);
-    gl.bindVertexArray(null);
+/**
+ * Triangles as the picture reads them.
+ * @param {number} most triangles
+ */
+export function makeMesh(most) {
+    const data = new ArrayBuffer(3 * most * MESH_BYTES), f32 = new Float32Array(data), i16 = new Int16Array(data);
+    const u8 = new Uint8Array(data), u32 = new Uint32Array(data);
+    let v = 0;
     return {
-        array,
-        count: 0,
-        set(/** @type {Sheet[]} */ sheets) {
-            let n = 0;
-            for (const s of sheets) n += Math.max(0, s.place.length / 3 - 2) * 3;
-            const data = new ArrayBuffer(n * SHEET_BYTES), f32 = new Float32Array(data);
-            const u8 = new Uint8Array(data), u32 = new Uint32Array(data);
-            let v = 0;
-            for (const s of sheets) {
-                for (let i = 1; i + 1 < s.place.length / 3; i++) {
-                    for (const c of [0, i, i + 1]) {
-                        f32.set(
-                            [
-                                s.place[3 * c], s.place[3 * c + 1], s.place[3 * c + 2], s.normal[0], s.normal[1],
-                                s.normal[2]
-                            ],
-                            9 * v);
-                        u8.set([s.colour[0], s.colour[1], s.colour[2], s.flat ? 0 : 255], SHEET_BYTES * v + 24);
-                        u32[9 * v++ + 7] = s.name;
-                    }
-                }
+        data,
+        /**
+         * Adds a corner.
+         * @param {number[]} place
+         * @param {number[]} normal
+         * @param {boolean} lit
+         * @param {ArrayLike<number>} colour
+         * @param {number} name
+         * @param {number} size m: edges fade where it is small
+         */
+        put(place, normal, lit, colour, name, size) {
+            for (let c = 0; c < 3; c++) {
+                f32[8 * v + c] = place[c];
+                i16[16 * v + 6 + c] = 32767 * normal[c];
+                u8[32 * v + 20 + c] = colour[c];
             }
-            this.count = n;
-            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-            gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+            i16[16 * v + 9] = lit ? 32767 : 0;
+            u32[8 * v + 6] = name;
+            f32[8 * v++ + 7] = size;
         }
     };
 }
 
-/** Triangles of deformable blocks, made by zones.js. @param {WebGL2RenderingContext} gl */
+/**
+ * Convex polygons as triangles.
+ * @param {Sheet[]} sheets
+ */
+export function sheetMesh(sheets) {
+    const out = makeMesh(sheets.reduce((n, s) => n + Math.max(0, s.place.length / 3 - 2), 0));
+    let solid = 0;
+    for (const s of sheets) {
+        for (let i = 1; i + 1 < s.place.length / 3; i++) {
+            for (const c of [0, i, i + 1])
+                out.put(triple(s.place, c), s.normal, !s.flat, s.colours?.[c] ?? s.colour, s.name, WHOLE_EDGES);
+            solid += 3;
+        }
+    }
+    return {data: out.data, solid, ghosts: 0};
+}
+
+/** Triangles of deformable blocks, made by zones.js, or of polygons. @param {WebGL2RenderingContext} gl */
 export function meshBuffer(gl) {
     const array = gl.createVertexArray(), buffer = gl.createBuffer();
     gl.bindVertexArray(array);

@@ -2,14 +2,14 @@
 // Ito.
 // @ts-check
 import {column, lengths} from "./frames.js";
-import {capital, figure} from "./math.js";
+import {BEYOND, capital, figure} from "./math.js";
 import {slimness} from "./slimness.js";
 import {atPoints, zoneColumn, zoneNames, zoneUnit} from "./zones.js";
 
 /** @typedef {import("./frames.js").Frame} Frame */
 /** @typedef {import("./frames.js").Model} Model */
 /**
- * @typedef {{title: string, kind: "scale", low: number, high: number, log: boolean, ramp: number[][], none: boolean,
+ * @typedef {{title: string, kind: "scale", low: number, high: number, log: boolean, ramp: number[][],
  *   grey?: number} | {title: string, kind: "list", items: {name: string, colour: number[]}[]} | {title: string,
  *   kind: "text", text: string}} Legend
  */
@@ -23,6 +23,7 @@ export const QUIET = WARM[0]; // what has but closed its joints
 const UNSAFE = [134, 19, 39];
 const SCARCE = [[222, 92, 48], [238, 154, 77], [240, 207, 144]];
 const SAFE = [[160, 200, 226], [92, 150, 198], [36, 92, 150]];
+const HOLDS = [0, 158, 115]; // at every factor that was tried
 const FACTORS = [1, 1.2, 1.5, 2];
 const OKABE = [
     [86, 180, 233], [230, 159, 0], [0, 158, 115], [204, 121, 167], [240, 228, 66], [0, 114, 178], [213, 94, 0],
@@ -114,12 +115,12 @@ function signed(low, high) {
     });
 }
 
-/** @param {import("./scene.js").Head} head @param {string} name @param {number} least @param {number} most */
-function zoneScale(head, name, least, most) {
-    const unit = zoneUnit(head, name), low = least < 0 ? -roundUp(-least) : 0;
+/** @param {string} name @param {string} unit @param {number} least @param {number} most */
+function signedScale(name, unit, least, most) {
+    const low = least < 0 ? -roundUp(-least) : 0;
     const high = most > 0 ? roundUp(most) : low < 0 ? 0 : 1;
     const title = capital(plain(name)) + (unit ? `, ${unit}` : "");
-    return {title, kind: /** @type {const} */ ("scale"), low, high, log: false, ramp: signed(low, high), none: true};
+    return {title, kind: /** @type {const} */ ("scale"), low, high, log: false, ramp: signed(low, high)};
 }
 
 /**
@@ -131,7 +132,10 @@ function zoneScale(head, name, least, most) {
 export function scaleOf(model, name) {
     const head = /** @type {import("./scene.js").Head} */ (model.head);
     const most = model.largest(name), least = model.least(name), size = head.size;
-    if (name.startsWith("zone:")) return zoneScale(head, name.slice(5), least, most);
+    const [kind, of] = name.split(":");
+    if (kind === "zone") return signedScale(of, zoneUnit(head, of), least, most);
+    if (kind === "element")
+        return signedScale(of, head.elementFields.find((f) => f.name === of)?.unit ?? "", least, most);
     const weight = 1e-3 * Math.hypot(...head.gravity) * model.density * size ** 3;
     /** @type {Record<string, [string, number]>} */
     const floors = {
@@ -152,14 +156,13 @@ export function scaleOf(model, name) {
             low: 0,
             high: roundUp(Math.max(most, known[1])),
             log: false,
-            ramp: WARM,
-            none: name === "slip"
+            ramp: WARM
         };
     const field = head.fields.find((f) => (f.of === "blocks" ? "field:" : "contact field:") + f.name === name);
     const title = known ? known[0] : field ? capital(plain(field.name)) + (field.unit ? `, ${field.unit}` : "") : name;
     const low = least >= 0 || !Number.isFinite(least) ? 0 : -roundUp(-least);
     const high = most > 0 ? roundUp(most) : low < 0 ? 0 : 1;
-    return {title, kind: "scale", low, high, log: false, ramp: COOL, none: true};
+    return {title, kind: "scale", low, high, log: false, ramp: COOL};
 }
 
 /**
@@ -246,7 +249,8 @@ export function colourBlocks(model, frame, by) {
         paint((i) => items[frame.poses.flags[i] & 1].colour);
         return done({title: "Held", kind: "list", items});
     }
-    if (by === "keys" || by === "safety") {
+    const map = by === "field:safety" ? column(frame.data, head, by) : null;
+    if (by === "keys" || by === "safety" || map) {
         const modes = new Map(), factors = new Map();
         const items = MODES.map(([name, colour]) => ({name: String(name), colour: /** @type {number[]} */ (colour)}));
         const keys = frame.data.keys;
@@ -255,16 +259,20 @@ export function colourBlocks(model, frame, by) {
             factors.set(keys.id[i], keys.mode[i] === 1 ? 0 : keys.factor[i]);
         }
         const classes = safetyClasses(head.limit);
-        paint((_i, row) => {
+        paint((i, row) => {
+            if (map) return Number.isNaN(map[i]) ? NONE : map[i] > BEYOND ? HOLDS : classOf(classes, map[i]).colour;
             const id = of(row, "body");
             return !modes.has(id) ? NONE
                 : by === "keys"   ? items[modes.get(id)].colour
                                   : classOf(classes, factors.get(id)).colour;
         });
         return done({
-            title: by === "safety" ? "Factor of safety" : "Keyblocks",
+            title: by === "keys" ? "Keyblocks" : "Factor of safety",
             kind: "list",
-            items: [...(by === "safety" ? classes : items), {name: "no keyblock", colour: NONE}]
+            items: [
+                ...(by === "keys" ? items : classes), ...(map ? [{name: "holds in all trials", colour: HOLDS}] : []),
+                {name: map ? "cannot move" : "no keyblock", colour: NONE}
+            ]
         });
     }
     if (by === "volume" || by === "bulk" || by === "aspect") { // slivers are dark in the last two
@@ -282,8 +290,7 @@ export function colourBlocks(model, frame, by) {
             low,
             high: Math.max(high, low * 1.01),
             log: true,
-            ramp: slim ? by === "bulk" ? [...WARM].reverse() : WARM : COOL,
-            none: false
+            ramp: slim ? by === "bulk" ? [...WARM].reverse() : WARM : COOL
         };
         paint((_i, row) => scaled(scale, value(row)));
         return done(scale);

@@ -2,6 +2,7 @@
 // @ts-check
 import {blockColours, contactColours, zoneColours} from "./colours.js";
 import {button, byId, checkBox, choice, element, labelled, slider} from "./dom.js";
+import {elementColours} from "./elements.js";
 import {makeLists} from "./lists.js";
 import {figure} from "./math.js";
 
@@ -63,7 +64,15 @@ export function makeControls(app) {
             checks(
                 check("mesh", "mesh", "colour"), check("smooth", "smooth", "colour"),
                 check("crosses", "principal stresses", "colour"))));
-    all.push({update() { zones.hidden = !app.model.surface; }});
+    const elements = element(
+        "div", {},
+        keep(choice("elements", () => elementColours(app.model.head), () => view.elements, set("elements", "pose"))));
+    all.push({
+        update() {
+            zones.hidden = !app.model.surface;
+            elements.hidden = !app.frame?.data.elements;
+        }
+    });
     const nodes = [
         ...group(
             "Colour", keep(choice("blocks", () => blockColours(app.model), () => view.colour, set("colour", "colour"))),
@@ -73,7 +82,8 @@ export function makeControls(app) {
                 () => [
                     ["", "none"], ["displacement", "displacement"], ["velocity", "velocity"],
                     ["force", "contact forces"]],
-                () => view.arrows, set("arrows", "pose")))),
+                () => view.arrows, set("arrows", "pose"))),
+            elements),
         ...group(
             "Blocks",
             keep(choice(

@@ -1,7 +1,7 @@
 // The model over time: a row for each block that ever was, and the frames, packed until they are looked at.
 // @ts-check
 import {readFrame} from "./scene.js";
-import {norm, triple} from "./math.js";
+import {BEYOND, norm, triple} from "./math.js";
 import {zoneColumn, zoneNames} from "./zones.js";
 
 /** @typedef {import("./scene.js").FrameData} FrameData */
@@ -83,6 +83,8 @@ export function column(data, head, name) {
     if (name === "rotation") return lengths(p.rotation).map((x) => x * 180 / Math.PI);
     if (name === "unbalanced") return p.unbalanced;
     if (name.startsWith("zone:")) return zoneColumn(data, head, name.slice(5));
+    if (name.startsWith("element:"))
+        return data.elementFields.find((f) => head.elementFields[f.field].name === name.slice(8))?.value ?? null;
     if (name.startsWith("field:") || name.startsWith("contact field:")) {
         const of = name.startsWith("field:") ? 0 : 1, wanted = name.slice(name.indexOf(":") + 1);
         return data.extras.find((e) => e.of === of && head.fields[e.field].name === wanted)?.value ?? null;
@@ -106,7 +108,8 @@ export function columnNames(data, head) {
     return [
         "displacement", "velocity", "rotation", "unbalanced",
         ...(data.contacts ? ["slip", "normal stress", "shear stress", "force"] : []), ...extra,
-        ...(data.zones.length ? zoneNames(head).map((name) => `zone:${name}`) : [])
+        ...(data.zones.length ? zoneNames(head).map((name) => `zone:${name}`) : []),
+        ...data.elementFields.map((f) => `element:${head.elementFields[f.field].name}`)
     ];
 }
 
@@ -121,7 +124,7 @@ function summarise(data, head) {
         let low = Infinity, high = -Infinity;
         for (let i = 0; i < values.length; i++) {
             if (values[i] < low) low = values[i];
-            if (values[i] > high) {
+            if (values[i] > high && values[i] < BEYOND) {
                 high = values[i];
                 if (name === "displacement") {
                     most = high;

@@ -5,8 +5,9 @@ import {offset} from "./poses.js";
 
 /** @typedef {import("./buffers.js").Arrow} Arrow */
 
-// names in the picture: the highest bits tell contacts and arrows from blocks
+// names in the picture: the highest bits tell contacts, elements and arrows from blocks
 const CONTACT = 0x80000000, ARROW = 0xc0000000;
+export const ELEMENT = 0xa0000000;
 const INKS = [[16, 30, 66], [150, 205, 255]], PUSHES = [[120, 20, 90], [255, 150, 220]]; // light, dark
 const TRACE = 0.03; // width of a contact's trace in a section, as a share of the blocks' size
 const LEAST = 0.02; // arrows shorter than this share of the longest are left out
@@ -14,17 +15,18 @@ const LEAST = 0.02; // arrows shorter than this share of the longest are left ou
 /**
  * What a name in the picture stands for.
  * @param {number} name
- * @returns {{kind: "none" | "block" | "contact" | "arrow", index: number, face: number}}
+ * @returns {{kind: "none" | "block" | "contact" | "element" | "arrow", index: number, face: number}}
  */
 export function named(name) {
     if (name === 0xffffffff) return {kind: "none", index: -1, face: -1};
     if (name >= ARROW) return {kind: "arrow", index: name - ARROW, face: -1};
+    if (name >= ELEMENT) return {kind: "element", index: name - ELEMENT, face: -1};
     if (name >= CONTACT) return {kind: "contact", index: name - CONTACT, face: -1};
     return {kind: "block", index: name & 0xffffff, face: Math.floor(name / 0x1000000)};
 }
 
 /**
- * The part of a convex polygon below a plane.
+ * The part of a convex polygon below a plane. Corners may have more numbers than their places.
  * @param {number[][]} corners
  * @param {import("./section.js").Plane} plane
  */
@@ -34,7 +36,7 @@ export function below(corners, plane) {
         const b = corners[(i + 1) % corners.length], x = dot(plane.normal, a) - plane.position;
         const y = dot(plane.normal, b) - plane.position;
         if (x <= 0) out.push(a);
-        if (x <= 0 !== y <= 0) out.push(add(a, scale(sub(b, a), x / (x - y))));
+        if (x <= 0 !== y <= 0) out.push(a.map((v, c) => v + (b[c] - v) * x / (x - y)));
     });
     return out;
 }

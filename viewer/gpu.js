@@ -2,19 +2,16 @@
 // edges. While nothing changes, pictures with sub-pixel offsets are averaged; while something moves, one draft without
 // shadow and occlusion.
 // @ts-check
-import {arrowBuffer, blockBuffer, meshBuffer, sheetBuffer} from "./buffers.js";
+import {arrowBuffer, blockBuffer, meshBuffer} from "./buffers.js";
 import {
     ARROW_VERTEX,
     DEPTH_FRAGMENT,
     MESH_VERTEX,
-    SHEET_VERTEX,
     SHOW_FRAGMENT,
     WHOLE_VERTEX,
-    blockFragment,
     blockVertex,
-    lightFragment,
-    meshFragment,
-    sheetFragment
+    fragment,
+    lightFragment
 } from "./shaders.js";
 
 /**
@@ -139,14 +136,13 @@ export function makeGpu(canvas) {
         gl.getExtension("EXT_color_buffer_float") !== null || gl.getExtension("EXT_color_buffer_half_float") !== null;
     // programs are made when they are first needed: most of them not for the first picture
     const texts = {
-        block: [blockVertex(""), blockFragment("")],
-        cut: [blockVertex(""), blockFragment("#define CUT\n")],
+        block: [blockVertex(""), fragment("", "flat")],
+        cut: [blockVertex(""), fragment("#define CUT\n", "flat")],
         depth: [blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
-        mesh: [MESH_VERTEX, meshFragment("")],
-        meshCut: [MESH_VERTEX, meshFragment("#define CUT\n")],
+        mesh: [MESH_VERTEX, fragment("")],
+        meshCut: [MESH_VERTEX, fragment("#define CUT\n")],
         meshDepth: [MESH_VERTEX, DEPTH_FRAGMENT],
-        sheet: [SHEET_VERTEX, sheetFragment("flat")],
-        arrow: [ARROW_VERTEX, sheetFragment("")],
+        arrow: [ARROW_VERTEX, fragment("")],
         show: [WHOLE_VERTEX, SHOW_FRAGMENT],
         draft: [WHOLE_VERTEX, lightFragment("")],
         full: [WHOLE_VERTEX, lightFragment("#define FULL\n")],
@@ -154,8 +150,8 @@ export function makeGpu(canvas) {
         fullGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n#define FULL\n")]
     };
     /** @type {Partial<Record<keyof typeof texts, ReturnType<typeof makeProgram>>>} */ const programs = {};
-    const zones = meshBuffer(gl), zoneCaps = meshBuffer(gl);
-    const caps = sheetBuffer(gl), sheets = sheetBuffer(gl), arrows = arrowBuffer(gl), empty = gl.createVertexArray();
+    const [zones, zoneCaps, caps, sheets] = [0, 0, 0, 0].map(() => meshBuffer(gl));
+    const arrows = arrowBuffer(gl), empty = gl.createVertexArray();
     const shadow = makeTexture(gl, gl.DEPTH_COMPONENT24, SHADOW, SHADOW), shadowTarget = makeTarget(gl, [], shadow);
     gl.bindTexture(gl.TEXTURE_2D, shadow);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
@@ -242,13 +238,6 @@ export function makeGpu(canvas) {
     /** What hides nothing: for the shadow of a whole model. @param {Look} look */
     const planeOf = (look) => (look.cut ? look.plane : [0, 0, 0, 1]);
 
-    /** @param {keyof typeof texts} kind @param {Sight} sight @param {Float32Array} matrix */
-    function useGlyphs(kind, sight, matrix) {
-        const at = use(kind, []);
-        gl.uniformMatrix4fv(at.u_matrix, false, matrix);
-        gl.uniform3fv(at.u_towards, sight.towards);
-    }
-
     /**
      * @param {ReturnType<typeof makeStage>} stage
      * @param {Sight} sight
@@ -272,15 +261,11 @@ export function makeGpu(canvas) {
         drawMesh(look.cut ? "meshCut" : "mesh", zones, matrix, pixels, look.plane, ghosts);
         gl.disable(gl.CULL_FACE);
         if (ghosts) return;
-        drawMesh("mesh", zoneCaps, matrix, pixels, look.plane, false);
-        for (const s of [caps, sheets]) {
-            if (!s.count) continue;
-            useGlyphs("sheet", sight, matrix);
-            gl.bindVertexArray(s.array);
-            gl.drawArrays(gl.TRIANGLES, 0, s.count);
-        }
+        for (const m of [zoneCaps, caps, sheets]) drawMesh("mesh", m, matrix, pixels, look.plane, false);
         if (!arrows.count) return;
-        useGlyphs("arrow", sight, matrix);
+        const at = use("arrow", []);
+        gl.uniformMatrix4fv(at.u_matrix, false, matrix);
+        gl.uniform3fv(at.u_towards, sight.towards);
         gl.bindVertexArray(arrows.array);
         gl.drawArraysInstanced(gl.TRIANGLES, 0, arrows.corners, arrows.count);
     }
@@ -445,7 +430,7 @@ export function makeGpu(canvas) {
 
 /** What stands in where a browser cannot draw. @returns {ReturnType<typeof makeGpu>} */
 export function noGpu() {
-    const nothing = () => {}, sheets = {set: nothing, count: 0};
+    const nothing = () => {}, sheets = {set: nothing, solid: 0};
     /** @type {any} */ const gpu = {
         gl: null,
         zones: sheets,

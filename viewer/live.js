@@ -161,7 +161,14 @@ export function makeRun(app) {
             "div", {className: "buttons"},
             button("Save", () => command({op: "snapshot"}), "Save the model as it is now"),
             button("VTK", () => command({op: "write_vtk"}), "Write a frame for ParaView"),
-            button("Show all", () => command({op: "show"}), "Show all blocks that are hidden in the run")),
+            button("Show all", () => command({op: "show"}), "Show all blocks that are hidden in the run"),
+            button(
+                "Safety",
+                () => {
+                    say("Trials on copies are made: the run waits.");
+                    command({op: "factor_of_safety"});
+                },
+                "Find the factor of safety, and pick what fails")),
         element("h2", {}, "Cut"), labelled("joint", joint, names),
         element("div", {className: "row"}, "dip", dip, "direction", direction),
         element("div", {className: "row"}, "point", ...origin),
@@ -227,7 +234,12 @@ export function makeRun(app) {
                 bad = live.refused !== "";
             }
         }
-        if (words && !anew && app.model.frames.length > 1) say(words, bad);
+        if (words && !anew && app.model.frames.length > 1) {
+            const [first, ...more] = /^model:factor_of.*; blocks (.*)/.exec(words)?.[1].split(", ").map(Number) ?? [];
+            if (first) app.pick(first);
+            for (const id of more) app.pickMore(id);
+            say(words, bad);
+        }
         return lives.length > 0;
     }
 

@@ -122,9 +122,12 @@ export function trendPlunge(v) {
 /** With a capital. @param {string} words */
 export function capital(words) { return words.charAt(0).toUpperCase() + words.slice(1); }
 
+export const BEYOND = 3e38; // numbers above it stand for infinite ones
+
 /** A number in at most three figures, as an engineer writes it. @param {number} x */
 export function figure(x) {
     if (!Number.isFinite(x)) return "–";
+    if (x > BEYOND) return "∞";
     if (x === 0) return "0";
     const size = Math.abs(x);
     if (size >= 1e6 || size < 1e-3)

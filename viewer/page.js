@@ -2,6 +2,7 @@
 // @ts-check
 import {App} from "./app.js";
 import {say} from "./dom.js";
+import {elementText} from "./elements.js";
 import {named} from "./glyphs.js";
 import {saveImage} from "./image.js";
 import {add, planeNormal, scale, trendPlunge} from "./math.js";
@@ -29,6 +30,7 @@ export class Page extends App {
         if (more) {
             if (i >= 0 && this.frame) this.pickMore(this.frame.poses.id[i]);
         } else if (what.kind === "contact" && k) this.pickContact(k.id[what.index]);
+        else if (what.kind === "element" && this.frame) say(elementText(this.frame, what.index));
         else this.pick(i >= 0 && this.frame ? this.frame.poses.id[i] : -1);
     }
 

@@ -1,6 +1,7 @@
 // Where the blocks of a frame are shown, and how: motion enlarged, model exploded, blocks hidden or as ghosts, cut by
 // the section.
 // @ts-check
+import {showsWalls} from "./elements.js";
 import {add, dot, norm, scale, sub, triple, turnAfter} from "./math.js";
 import {rowsOf, shownPoints} from "./zones.js";
 
@@ -38,8 +39,9 @@ export function showFrame(model, frame, view) {
         high[i % 3] = Math.max(high[i % 3], p.place[i]);
     }
     const middle = p.n ? scale(add(low, high), 0.5) : [0, 0, 0], threshold = view.moved;
-    // contacts lie within the model: unless a section shows them, blocks are transparent then
-    const clear = view.solid === "no" || (view.solid === "" && view.contacts !== "" && !view.cut && view.explode === 0);
+    // contacts and walls lie within the model: unless a section shows them, blocks are transparent then
+    const within = view.contacts !== "" || showsWalls(frame, view.elements);
+    const clear = view.solid === "no" || (view.solid === "" && within && !view.cut && view.explode === 0);
     let ghosts = false;
     for (let i = 0; i < p.n; i++) {
         const row = frame.rows[i], id = p.id[i], k = 3 * i;

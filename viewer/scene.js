@@ -7,7 +7,7 @@
  * @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number,
  *   groups: string[], joints: string[], laws: string[], friction: number[], limit: number, fields: Field[], histories:
  * string[], live: boolean, commands: boolean, solids: string[], zoneStates: string[], zoneFields: {name: string, unit:
- * string}[]}} Head
+ * string}[], elements: string[], elementFields: {name: string, unit: string}[]}} Head
  */
 /**
  * @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array,
@@ -39,16 +39,20 @@
  * deformable bodies: gridpoints, zones and the triangles of their surfaces; not whole: without zones inside
  */
 /** @typedef {{n: number, place: Float32Array, displacement: Float32Array}} Points gridpoints of a frame */
-/** @typedef {{field: number, value: Float32Array}} ZoneField */
+/** @typedef {{field: number, value: Float32Array}} Numbers of zones, or of points of elements */
+/**
+ * @typedef {{n: number, P: number, id: Uint32Array, kind: Uint32Array, points: Uint32Array, flags: Uint32Array, block:
+ * Uint32Array, place: Float32Array}} Elements lines and polygons
+ */
 /**
  * @typedef {{n: number, body: Uint32Array, normal: Float32Array}} Touches outward normals of the faces with which
  *   bodies lie on others, body by body
  */
 /**
  * @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches |
- *   null, surface: Surface | null, points: Points | null, zones: ZoneField[], poses: Poses | null, contacts: Contacts |
- *   null, laws: Uint32Array | null, extras: Extra[], line: Line | null, keys: Keys | null,
- *   finding: Finding | null, live: Live[], number: number}} FrameData
+ *   null, surface: Surface | null, points: Points | null, zones: Numbers[], elements: Elements | null, elementFields:
+ *   Numbers[], poses: Poses | null, contacts: Contacts | null, laws: Uint32Array | null, extras: Extra[], line: Line |
+ *   null, keys: Keys | null, finding: Finding | null, live: Live[], number: number}} FrameData
  */
 /**
  * @typedef {{standing: string, text: string, stage: string, closed: number, contacts: number, slipping: number,
@@ -159,7 +163,9 @@ function readHead(c) {
     const triple = (/** @type {any} */ v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
     if (!triple(h.origin) || !triple(h.gravity)) throw c.bad("origin and gravity must be lists of three numbers");
     if (!(Number.isFinite(h.size) && h.size > 0)) throw c.bad("the size must be a positive number");
-    const fields = Array.isArray(h.fields) ? h.fields : [];
+    const list = (/** @type {any} */ of) =>
+        (Array.isArray(of) ? of : [])
+            .map((/** @type {any} */ f) => ({name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of)}));
     const friction =
         (Array.isArray(h.friction) ? h.friction : []).map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN));
     return {
@@ -174,14 +180,14 @@ function readHead(c) {
         laws: names(h.laws ?? [""], "laws"),
         histories:
             names(h.histories?.map?.((/** @type {any} */ x) => x.name + (x.unit && ", " + x.unit)) ?? [], "histories"),
-        fields: fields.map(
-            (/** @type {any} */ f) => ({name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of)})),
+        fields: list(h.fields),
         friction,
         limit: Number.isFinite(h.safety_limit) && h.safety_limit > 0 ? h.safety_limit : NaN,
         solids: names(h.solids ?? [], "solids"),
         zoneStates: names(h.zone_states ?? [], "zone_states"),
-        zoneFields: (Array.isArray(h.zone_fields) ? h.zone_fields : [])
-                        .map((/** @type {any} */ f) => ({name: String(f?.name), unit: String(f?.unit ?? "")})),
+        zoneFields: list(h.zone_fields),
+        elements: names(h.elements ?? [], "elements"),
+        elementFields: list(h.element_fields),
         live: h.live === true,
         commands: h.commands === true
     };
@@ -383,11 +389,36 @@ function readPoints(c) {
     return {n, place: c.f32(3 * n, "place"), displacement: c.f32(3 * n, "displacement")};
 }
 
-/** @param {Columns} c @param {Head} head @returns {ZoneField} */
-function readZoneField(c, head) {
+/** @param {Columns} c @param {object[]} fields @returns {Numbers} */
+function readNumbers(c, fields) {
     const [field, n] = c.u32(2, "counts");
-    checkField(c, field, head.zoneFields);
+    checkField(c, field, fields);
     return {field, value: c.f32(n, "value", true)};
+}
+
+/** @param {Columns} c @param {Head} head @returns {Elements} */
+function readElements(c, head) {
+    const [n, P] = c.u32(2, "counts");
+    const e = {
+        n,
+        P,
+        id: c.u32(n, "id"),
+        kind: c.u32(n, "kind"),
+        points: c.u32(n, "points"),
+        flags: c.u32(n, "flags"),
+        block: c.u32(P, "block"),
+        place: c.f32(3 * P, "place")
+    };
+    c.sum(e.points, P, "points");
+    c.below(e.kind, head.elements.length, "kind");
+    return e;
+}
+
+/** @param {Columns} c @param {FrameData} frame @param {Head} head @returns {Numbers} */
+function readElementField(c, frame, head) {
+    const numbers = readNumbers(c, head.elementFields);
+    checkCount(c, numbers.value.length, frame.elements?.P);
+    return numbers;
 }
 
 /** @param {Columns} c @returns {Finding} */
@@ -433,6 +464,8 @@ export function readFrame(buffer, head, news) {
         surface: null,
         points: null,
         zones: [],
+        elements: null,
+        elementFields: [],
         poses: null,
         contacts: null,
         laws: null,
@@ -467,7 +500,9 @@ function readChunks(buffer, head, frame) {
         else if (name === "TOUC") frame.touches = readTouches(c);
         else if (name === "SURF") frame.surface = readSurface(c, head);
         else if (name === "SPOS") frame.points = readPoints(c);
-        else if (name === "ZFLD") frame.zones.push(readZoneField(c, head));
+        else if (name === "ZFLD") frame.zones.push(readNumbers(c, head.zoneFields));
+        else if (name === "ELEM") frame.elements = readElements(c, head);
+        else if (name === "EFLD") frame.elementFields.push(readElementField(c, frame, head));
         else if (name === "FRAM") frame.poses = readPoses(c);
         else if (name === "CONT") frame.contacts = readContacts(c, head);
         else if (name === "LAWS") frame.laws = readLaws(c, frame, head);

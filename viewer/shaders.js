@@ -31,7 +31,7 @@ layout(location = 1) in vec3 a_normal;
 layout(location = 2) in uvec2 a_name; // block row and face; joint
 uniform bool u_faces;
 flat out vec4 v_colour; // w: how strong its edges are
-flat out vec3 v_normal;
+flat out vec4 v_normal;
 flat out uint v_name;
 flat out float v_cut;
 out vec3 v_world;
@@ -44,9 +44,9 @@ void main() {
     v_world = place.xyz + turn(q, a_place);
     gl_Position = u_matrix * vec4(v_world, 1.0);
 #ifndef DEPTH
-    v_normal = turn(q, a_normal);
+    v_normal = vec4(turn(q, a_normal), 1.0);
     v_colour = texelFetch(u_colour, at(row, u_colour), 0); // w: its own colour, whatever its faces have
-    if (u_faces && v_colour.w < 0.5) 
+    if (u_faces && v_colour.w < 0.5)
         v_colour = texelFetch(u_palette, ivec2(int(a_name.y) % textureSize(u_palette, 0).x, 0), 0);
     v_colour.w = clamp(second.w * u_pixels / gl_Position.w / 9.0, 0.0, 1.0);
     v_name = a_name.x;
@@ -55,11 +55,15 @@ void main() {
 }`;
 }
 
-/** @param {string} define */
-export function blockFragment(define) {
+/**
+ * What is seen of blocks, meshes, polygons and arrows. The sides of a polygon are lit alike.
+ * @param {string} define
+ * @param {string} flat blocks have one colour for each face
+ */
+export function fragment(define, flat = "") {
     return HEAD + define + `
-flat in vec4 v_colour;
-flat in vec3 v_normal;
+${flat} in vec4 v_colour;
+flat in vec4 v_normal;
 flat in uint v_name;
 flat in float v_cut;
 in vec3 v_world;
@@ -72,7 +76,7 @@ void main() {
     if (v_cut > 0.0 && dot(u_plane.xyz, v_world) > u_plane.w) discard;
 #endif
     o_colour = v_colour;
-    o_normal = vec4(v_normal * 0.5 + 0.5, 1.0);
+    o_normal = vec4(v_normal.xyz * (gl_FrontFacing ? 0.5 : -0.5) + 0.5, v_normal.w);
     o_name = v_name;
 }`;
 }
@@ -83,8 +87,9 @@ in vec3 v_world;
 uniform vec4 u_plane;
 void main() { if (v_cut > 0.0 && dot(u_plane.xyz, v_world) > u_plane.w) discard; }`;
 
-// Triangles of deformable blocks, of their surfaces and sections: places in the model. The fourth number of a normal is
-// 1 where it is lit, 0 flat. Edges of small triangles fade.
+// Triangles of deformable blocks and of their sections, polygons of contacts and sections: places in the model. The
+// fourth number of a normal is 1 where it is lit, 0 flat: sections have the colours of the legend. Edges of small
+// triangles fade.
 export const MESH_VERTEX = HEAD + `
 layout(location = 0) in vec3 a_place;
 layout(location = 1) in vec4 a_normal;
@@ -107,46 +112,8 @@ void main() {
     v_name = a_name;
 }`;
 
-/** @param {string} define */
-export function meshFragment(define) {
-    return HEAD + define + `
-in vec4 v_colour;
-flat in vec4 v_normal;
-flat in uint v_name;
-in vec3 v_world;
-uniform vec4 u_plane;
-layout(location = 0) out vec4 o_colour;
-layout(location = 1) out vec4 o_normal;
-layout(location = 2) out uint o_name;
-void main() {
-#ifdef CUT
-    if (dot(u_plane.xyz, v_world) > u_plane.w) discard;
-#endif
-    o_colour = v_colour;
-    o_normal = vec4(v_normal.xyz * 0.5 + 0.5, v_normal.w);
-    o_name = v_name;
-}`;
-}
-
-// Section polygons and contact polygons: places in the model. Sections are not lit, so that their colours match the
-// legend.
-export const SHEET_VERTEX = HEAD + `
-layout(location = 0) in vec3 a_place;
-layout(location = 1) in vec3 a_normal;
-layout(location = 2) in vec4 a_colour; // w: 1 lit, 0 flat
-layout(location = 3) in uint a_name;
-uniform mat4 u_matrix;
-flat out vec4 v_colour;
-flat out vec4 v_normal;
-flat out uint v_name;
-void main() {
-    gl_Position = u_matrix * vec4(a_place, 1.0);
-    v_colour = vec4(a_colour.rgb, 1.0);
-    v_normal = vec4(a_normal, a_colour.w);
-    v_name = a_name;
-}`;
-
-// Arrows: one mesh (along z, from 0 to 1) drawn for each. They lie in front of everything else.
+// Arrows: one mesh (along z, from 0 to 1) drawn for each. They lie in front of everything else. One of negative width
+// is a rod, without a head.
 export const ARROW_VERTEX = HEAD + `
 layout(location = 0) in vec4 a_mesh; // radius direction x, y; radius; z: negative z counts from the tip in heads
 layout(location = 1) in vec3 a_tail;
@@ -155,40 +122,23 @@ layout(location = 3) in vec4 a_colour;
 layout(location = 4) in uint a_name;
 uniform mat4 u_matrix;
 uniform vec3 u_towards;
-flat out vec4 v_colour;
-out vec4 v_normal;
+out vec4 v_colour;
+flat out vec4 v_normal;
 flat out uint v_name;
 void main() {
-    float l = max(length(a_way.xyz), 1e-20), head = min(a_way.w * 4.5, l);
+    float l = max(length(a_way.xyz), 1e-20), head = clamp(a_way.w * 4.5, 0.0, l);
     vec3 z = a_way.xyz / l;
     vec3 x = normalize(abs(z.z) < 0.9 ? cross(z, vec3(0, 0, 1)) : cross(z, vec3(1, 0, 0))), y = cross(z, x);
     vec3 out_ = x * a_mesh.x + y * a_mesh.y;
-    float along = a_mesh.w < 0.0 ? l + (a_mesh.w + 1.0) * head - head + 0.0 : a_mesh.w * (l - head);
-    gl_Position = u_matrix * vec4(a_tail + z * along + out_ * a_mesh.z * a_way.w, 1.0);
+    float along = a_mesh.w < 0.0 ? l + a_mesh.w * head : a_mesh.w * (l - head);
+    float radius = a_way.w < 0.0 ? -min(a_mesh.z, 0.5) : a_mesh.z;
+    gl_Position = u_matrix * vec4(a_tail + z * along + out_ * radius * a_way.w, 1.0);
     gl_Position.z = mix(-gl_Position.w, gl_Position.z, 0.01);
     float light = 0.72 + 0.28 * dot(normalize(out_ + z * 0.3), u_towards);
-    v_colour = vec4(a_colour.rgb * light, 1.0);
+    v_colour = vec4(a_colour.rgb * light, a_way.w < 0.0 ? 0.3 : 1.0);
     v_normal = vec4(out_, 0.0);
     v_name = a_name;
 }`;
-
-/** @param {string} flat */
-export function sheetFragment(flat) {
-    return HEAD + `
-flat in vec4 v_colour;
-${flat} in vec4 v_normal;
-flat in uint v_name;
-layout(location = 0) out vec4 o_colour;
-layout(location = 1) out vec4 o_normal;
-layout(location = 2) out uint o_name;
-uniform vec3 u_towards;
-void main() {
-    vec3 n = dot(v_normal.xyz, u_towards) < 0.0 ? -v_normal.xyz : v_normal.xyz;
-    o_colour = v_colour;
-    o_normal = vec4(n * 0.5 + 0.5, v_normal.w);
-    o_name = v_name;
-}`;
-}
 
 export const WHOLE_VERTEX = HEAD + `
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;

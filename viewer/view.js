@@ -6,8 +6,8 @@
  *   opacity: number, moved: number, explode: number, motion: number, cut: boolean, other: boolean, dip: number,
  *   direction: number, position: number, parallel: boolean, net: boolean, dark: boolean, shadows: boolean,
  *   picked: number, contact: number, also: Set<number>, joint: string, hidden: Set<number>, ghosts: Set<number>,
- *   only: Set<number>, zones: string, mesh: boolean, smooth: boolean, crosses: boolean}} View also: all picked blocks,
- * where there are several
+ *   only: Set<number>, zones: string, mesh: boolean, smooth: boolean, crosses: boolean, elements: string}} View also:
+ * all picked blocks, where there are several
  */
 
 /** @returns {View} */
@@ -42,7 +42,8 @@ export function makeView() {
         zones: "",
         mesh: true,
         smooth: false,
-        crosses: false
+        crosses: false,
+        elements: ""
     };
 }
 

@@ -2,7 +2,7 @@
 // @ts-check
 import {CAP_FACE} from "./section.js";
 import {add, cross, dot, norm, scale, sub, triple, unit} from "./math.js";
-import {MESH_BYTES, faceName} from "./buffers.js";
+import {faceName, makeMesh} from "./buffers.js";
 
 /** @typedef {import("./scene.js").Surface} Surface */
 /** @typedef {import("./frames.js").Model} Model */
@@ -152,38 +152,6 @@ export function shownPoints(model, frame, view, middle) {
             out[k] = points.place[k] + (view.motion - 1) * points.displacement[k] + away[k % 3];
     }
     return out;
-}
-
-/**
- * Triangles as the picture reads them.
- * @param {number} most triangles
- */
-function makeMesh(most) {
-    const data = new ArrayBuffer(3 * most * MESH_BYTES), f32 = new Float32Array(data), i16 = new Int16Array(data);
-    const u8 = new Uint8Array(data), u32 = new Uint32Array(data);
-    let v = 0;
-    return {
-        data,
-        /**
-         * Adds a corner.
-         * @param {number[]} place
-         * @param {number[]} normal
-         * @param {boolean} lit
-         * @param {ArrayLike<number>} colour
-         * @param {number} name
-         * @param {number} size m: edges fade where it is small
-         */
-        put(place, normal, lit, colour, name, size) {
-            for (let c = 0; c < 3; c++) {
-                f32[8 * v + c] = place[c];
-                i16[16 * v + 6 + c] = 32767 * normal[c];
-                u8[32 * v + 20 + c] = colour[c];
-            }
-            i16[16 * v + 9] = lit ? 32767 : 0;
-            u32[8 * v + 6] = name;
-            f32[8 * v++ + 7] = size;
-        }
-    };
 }
 
 /**

@@ -1,6 +1,7 @@
 /* element_forces.c - elements act on bodies: a contributor of a step; and elements with their strengths divided. */
 #include "cycle/element_forces.h"
 
+#include "base/columns.h"
 #include "base/error.h"
 #include "base/strength.h"
 #include "cycle/cycle_data.h"
@@ -10,8 +11,10 @@
 #include "element/life.h"
 #include "element/set.h"
 #include "element/steady.h"
+#include "element/together.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <talus/number.h>
 
 static tl_status apply(tl_model *m)
@@ -48,7 +51,16 @@ static bool may_fail(const tl_model *m)
         sure = sure && tl_element_ops_of(&e->set[k])->never_fails;
     for (size_t row = 0; sure && row < e->nodes.table.rows; row++)
         sure = e->nodes.k[row] < TL_UNDO_TAME && e->nodes.c[row] < TL_UNDO_TAME;
-    return !sure;
+    return !sure || tl_elements_together_due(m);
+}
+
+void tl_elements_pull(const tl_model *m, tl_vec3 *force)
+{
+    const tl_node_table *n = m->elements ? &m->elements->nodes : NULL;
+    memset(force, 0, m->bodies.table.rows * sizeof *force);
+    for (uint32_t row = 0; n && tl_elements_are_listed(m) && row < n->table.rows; row++)
+        if (n->body[row] != TL_NO_ROW)
+            force[n->body[row]] = tl_v3_add(force[n->body[row]], tl_columns_get(n->force, row));
 }
 
 const tl_contributor tl_elements_act = {.name = "elements",

@@ -233,6 +233,13 @@ static void times_root(const tl_secant *of, const double s[6], double turned[6],
         ks[i] = dot(of->root[i], turned);
 }
 
+/* Whether none of the contact has pressed so far. No motion can teach what has no stiffness, so it begins anew until
+ * it presses. Else nothing but the hold would bound the leaps of bodies whose contacts close. */
+static bool is_open(const tl_secant *of)
+{
+    return !(of->root[0][0] > 0);
+}
+
 /* A step with the motion s has changed the force by -y. */
 static void secant_update(tl_secant *of, const double s[6], double y[6], double keeps)
 {
@@ -295,7 +302,7 @@ static void follow_range(void *user, size_t begin, size_t end, size_t chunk, uns
             continue;
         }
         const bool same = s->born == c->born[i] && s->a == c->a[i] && s->b == c->b[i] && s->kind == c->kind[i];
-        if (job->anew || !same) {
+        if (job->anew || !same || is_open(s)) {
             secant_begin(m, i, s);
             continue;
         }

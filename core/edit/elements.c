@@ -7,6 +7,7 @@
 #include "element/relay.h"
 #include "element/set.h"
 #include "element/steady.h"
+#include "element/together.h"
 #include "model/joints.h"
 #include "model/rows.h"
 #include "plugin/loader.h"
@@ -111,8 +112,12 @@ static tl_status commit(making *k, tl_id **ids, size_t *made)
     const uint32_t first = (uint32_t)e->set_count;
     e->set_count += k->count;
     tl_steady_let_go(m);
-    const tl_status status = tl_placing_commit(&k->placing, first);
+    tl_status status = tl_placing_commit(&k->placing, first);
+    if (status == TL_OK)
+        status = tl_elements_together(m, before, false);
     if (status != TL_OK) {
+        tl_table_resize(&e->table.table, before);
+        tl_table_resize(&e->nodes.table, nodes);
         e->set_count -= k->count;
         free(list);
         return status;
@@ -201,6 +206,30 @@ tl_status tl_model_element_places(tl_model *m, const char *kind, const tl_args *
     return status;
 }
 
+tl_status tl_model_element_middles(tl_model *m, const char *kind, const tl_args *args, size_t count, tl_vec3 **places,
+                                   size_t *elements)
+{
+    making k = {.m = m};
+    *places = NULL;
+    *elements = 0;
+    tl_placing_begin(&k.placing, m, find_faces);
+    tl_status status = ask(&k, kind, args, count, NULL);
+    if (status == TL_OK) {
+        *places = malloc((k.placing.placed_count + 1) * sizeof **places);
+        status = *places ? TL_OK : tl_fail_memory(&m->error);
+    }
+    for (size_t i = 0; status == TL_OK && i < k.placing.placed_count; i++) {
+        const tl_placed *one = &k.placing.placed[i];
+        tl_vec3 sum = {0, 0, 0};
+        for (size_t n = 0; n < one->node_count; n++)
+            sum = tl_v3_add(sum, k.placing.node[one->node + n].place);
+        (*places)[i] = tl_v3_scale(1.0 / one->node_count, sum);
+    }
+    *elements = status == TL_OK ? k.placing.placed_count : 0;
+    end(&k);
+    return status;
+}
+
 /* ---------------------------------------------------------------- changing --------------- */
 
 tl_status tl_element_put(tl_model *m, tl_id element, size_t index, const char *name, double value)
@@ -216,6 +245,19 @@ tl_status tl_element_put(tl_model *m, tl_id element, size_t index, const char *n
     *at = value;
     changed(m);
     return TL_OK;
+}
+
+tl_status tl_elements_renew(tl_model *m)
+{
+    tl_status status = tl_model_may_set(m, "change elements");
+    if (status != TL_OK || !tl_model_has_elements(m))
+        return status;
+    tl_rows_tidy(m);
+    tl_elements_follow(m);
+    status = tl_elements_together(m, 0, false);
+    if (status == TL_OK)
+        changed(m);
+    return status;
 }
 
 /* Whether all that is given may be set after placing. */
@@ -234,29 +276,98 @@ static tl_status check_args(tl_model *m, const tl_kind *kind, const tl_args *arg
     return TL_OK;
 }
 
-/* Gives each listed element a set of its own with the parameters. */
-static tl_status set_each(tl_model *m, const uint32_t *row, size_t count, const tl_args *args)
+/* Of each set how many elements it has, and how many of them are listed. */
+typedef struct chosen {
+    uint32_t all, some;
+} chosen;
+
+/* Counts them; NULL: out of memory. A kind that places again repeats whole calls, so parts of one cannot differ. */
+static chosen *choose(tl_model *m, const uint32_t *row, size_t count, const char *what)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_element_table *t = &e->table;
+    chosen *of = calloc(e->set_count + 1, sizeof *of);
+    unsigned char *listed = calloc(t->table.rows + 1, 1);
+    tl_status status = of && listed ? TL_OK : tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        listed[row[i]] = 1;
+    for (size_t i = 0; i < t->table.rows && status == TL_OK; i++) {
+        of[t->set[i]].all++;
+        of[t->set[i]].some += listed[i];
+    }
+    for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
+        if (of[k].some > 0 && of[k].some < of[k].all && tl_element_ops_of(&e->set[k])->lays_again)
+            status =
+                tl_fail(&m->error, TL_E_ARGUMENT,
+                        "element '%s': %u of the %u that one call has placed cannot be %s alone, for the call is "
+                        "repeated as a whole where blocks change: name all of them, or make another call for those "
+                        "places",
+                        e->set[k].kind->name, of[k].some, of[k].all, what);
+    free(listed);
+    if (status != TL_OK) {
+        free(of);
+        return NULL;
+    }
+    return of;
+}
+
+/* Makes the sets with the parameters, one for each that has listed elements, at fresh[count of sets]. */
+static tl_status make_sets(tl_model *m, const chosen *of, const tl_args *args, tl_element_set *fresh)
+{
+    const struct tl_elements *e = m->elements;
+    tl_status status = TL_OK;
+    for (size_t k = 0; k < e->set_count && status == TL_OK; k++) {
+        char context[80];
+        if (of[k].some == 0)
+            continue;
+        tl_text_print(context, sizeof context, "element '%.40s'", e->set[k].kind->name);
+        status = check_args(m, e->set[k].kind, args);
+        if (status == TL_OK)
+            status = tl_element_set_make(e->set[k].kind, args, &e->set[k], context, &m->error, &fresh[k]);
+    }
+    return status;
+}
+
+/* Puts a new set in the place of one whose elements are all listed, so that the order of calls stays. Of others the
+ * listed elements get the new one, which comes last. */
+static void put_sets(struct tl_elements *e, const uint32_t *row, size_t count, const chosen *of, tl_element_set *fresh)
+{
+    const size_t before = e->set_count;
+    for (size_t k = 0; k < before; k++) {
+        if (of[k].some == 0)
+            continue;
+        if (of[k].some == of[k].all) {
+            tl_element_set_clear(&e->set[k]);
+            e->set[k] = fresh[k];
+        } else {
+            for (size_t i = 0; i < count; i++)
+                if (e->table.set[row[i]] == k)
+                    e->table.set[row[i]] = (uint32_t)e->set_count;
+            e->set[e->set_count++] = fresh[k];
+        }
+        fresh[k] = (tl_element_set){.kind = NULL};
+    }
+}
+
+static tl_status set_all(tl_model *m, const uint32_t *row, size_t count, const tl_args *args)
 {
     struct tl_elements *e = m->elements;
     const size_t before = e->set_count;
-    tl_status status = TL_OK;
-    for (size_t i = 0; i < count && status == TL_OK; i++) {
-        const uint32_t set = e->table.set[row[i]];
-        char context[80];
-        tl_text_print(context, sizeof context, "element '%.40s'", e->set[set].kind->name);
-        status = check_args(m, e->set[set].kind, args);
-        if (status == TL_OK && !tl_grow(&e->set, &e->set_capacity, e->set_count + 1, sizeof *e->set))
-            status = tl_fail_memory(&m->error);
-        if (status == TL_OK)
-            status =
-                tl_element_set_make(e->set[set].kind, args, &e->set[set], context, &m->error, &e->set[e->set_count]);
-        e->set_count += status == TL_OK;
-    }
-    if (status != TL_OK)
-        while (e->set_count > before)
-            tl_element_set_clear(&e->set[--e->set_count]);
-    for (size_t i = 0; i < count && status == TL_OK; i++)
-        e->table.set[row[i]] = (uint32_t)(before + i);
+    chosen *of = choose(m, row, count, "changed");
+    if (!of)
+        return m->error.status;
+    tl_element_set *fresh = calloc(before + 1, sizeof *fresh);
+    tl_status status =
+        fresh && tl_grow(&e->set, &e->set_capacity, 2 * before, sizeof *e->set) ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = make_sets(m, of, args, fresh);
+    if (status == TL_OK)
+        put_sets(e, row, count, of, fresh);
+    for (size_t k = 0; fresh && k < before; k++)
+        if (fresh[k].kind)
+            tl_element_set_clear(&fresh[k]);
+    free(fresh);
+    free(of);
     return status;
 }
 
@@ -279,12 +390,12 @@ static uint32_t *rows_of(tl_model *m, const tl_id *elements, size_t count)
 tl_status tl_elements_set(tl_model *m, const tl_id *elements, size_t count, const tl_args *args)
 {
     tl_status status = tl_model_may_set(m, "change elements");
-    if (status != TL_OK || count == 0)
+    if (status != TL_OK || count == 0 || args->count == 0)
         return status;
     uint32_t *row = rows_of(m, elements, count);
     if (!row)
         return m->error.status;
-    status = set_each(m, row, count, args);
+    status = set_all(m, row, count, args);
     free(row);
     if (status == TL_OK)
         changed(m);
@@ -300,6 +411,12 @@ tl_status tl_elements_delete(tl_model *m, const tl_id *elements, size_t count)
     if (!row)
         return m->error.status;
     struct tl_elements *e = m->elements;
+    chosen *of = choose(m, row, count, "deleted");
+    if (!of) {
+        free(row);
+        return m->error.status;
+    }
+    free(of);
     unsigned char *keep = malloc(e->table.table.rows + 1);
     if (keep) {
         memset(keep, 1, e->table.table.rows);

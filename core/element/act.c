@@ -5,10 +5,12 @@
 #include "element/act.h"
 
 #include "base/columns.h"
+#include "base/inline.h"
 #include "base/inside.h"
 #include "element/batch.h"
 #include "element/carry.h"
 #include "element/steady.h"
+#include "element/together.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -23,21 +25,40 @@ typedef struct apply_job {
     tl_failure *failure;
 } apply_job;
 
+/* Present displacement and normal of a node: of one on a rigid body without a call, for most nodes are. */
+TL_INLINE tl_vec3 look_at(const tl_model *m, uint32_t row, tl_vec3 *normal)
+{
+    const tl_node_table *n = &m->elements->nodes;
+    const uint32_t body = n->body[row];
+    if (body == TL_NO_ROW || m->bodies.mesh[body]) {
+        *normal = tl_node_normal(m, row);
+        return tl_node_moved(m, row);
+    }
+    const tl_pose *pose = &m->bodies.pose[body];
+    const tl_vec3 outward = tl_columns_get(n->normal, row);
+    *normal = tl_v3_norm2(outward) == 0 ? tl_v3(0, 0, 0) : tl_m3_mul(&pose->r, outward);
+    const tl_vec3 now = tl_v3_add(pose->u, tl_m3_mul(&pose->r, tl_columns_get(n->local, row)));
+    return tl_v3_sub(now, tl_columns_get(n->base, row));
+}
+
 /* Where the nodes of a chunk have gone since the last step. */
 static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes)
 {
     tl_node_table *n = &m->elements->nodes;
     const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
     for (uint32_t row = of->node_begin, i = 0; row < of->node_end; row++, i++) {
-        const tl_vec3 u = tl_node_moved(m, row), normal = tl_node_normal(m, row);
-        const tl_vec3 du = tl_v3_sub(u, tl_columns_get(n->u, row));
+        tl_vec3 normal;
+        const tl_vec3 u = look_at(m, row, &normal), du = tl_v3_sub(u, tl_columns_get(n->u, row));
         tl_columns_put(n->u, row, u);
-        for (int k = 0; k < 3; k++) {
-            const double way = k == 0 ? du.x : k == 1 ? du.y : du.z;
-            lanes->du[k][i] = way;
-            lanes->v[k][i] = per * way;
-            lanes->normal[k][i] = k == 0 ? normal.x : k == 1 ? normal.y : normal.z;
-        }
+        lanes->du[0][i] = du.x;
+        lanes->du[1][i] = du.y;
+        lanes->du[2][i] = du.z;
+        lanes->v[0][i] = per * du.x;
+        lanes->v[1][i] = per * du.y;
+        lanes->v[2][i] = per * du.z;
+        lanes->normal[0][i] = normal.x;
+        lanes->normal[1][i] = normal.y;
+        lanes->normal[2][i] = normal.z;
     }
 }
 
@@ -55,13 +76,25 @@ static uint32_t find_odd(const struct tl_elements *e, const tl_element_chunk *of
     return of->end;
 }
 
+/* Counts what was whole and is broken now. */
+static void count_broken(tl_element_chunk *of, const uint32_t *before, const uint32_t *now)
+{
+    of->broke = 0;
+    for (uint32_t i = of->end - of->begin; i-- > 0;)
+        if (~before[i] & now[i] & (uint32_t)TL_ELEMENT_BROKEN) {
+            of->broke++;
+            of->first_broke = of->begin + i;
+        }
+}
+
 static void apply_chunk(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)end, (void)thread;
     const apply_job *job = user;
     struct tl_elements *e = job->m->elements;
-    const tl_element_chunk *of = &e->chunk[begin];
+    tl_element_chunk *of = &e->chunk[begin];
     const tl_element_set *set = &e->set[of->set];
+    of->broke = 0;
     if (of->steady && e->resting) {
         memset(e->table.given + of->begin, 0, (of->end - of->begin) * sizeof *e->table.given);
         return;
@@ -72,9 +105,11 @@ static void apply_chunk(void *user, size_t begin, size_t end, size_t chunk, unsi
     move_nodes(job->m, of, &lanes);
     memset(batch.lost, 0, batch.count * sizeof *batch.lost);
     memset(batch.given, 0, batch.count * sizeof *batch.given);
+    memcpy(lanes.flags, batch.flags, batch.count * sizeof *batch.flags);
     tl_enter(set->kind, "update");
     tl_status status = tl_element_ops_of(set)->update(set->self, &batch, &report);
     tl_leave();
+    count_broken(of, lanes.flags, batch.flags);
     const char *text =
         status == TL_OK ? "it gives a force or an energy that is not finite" : tl_report_text(&report, status);
     uint32_t row = of->begin + (report.first_bad < batch.count ? (uint32_t)report.first_bad : 0);
@@ -102,17 +137,46 @@ static tl_status ask_all(tl_model *m, tl_failure *failure)
                    e->table.id[row], kind->name, tl_plugin_id(kind), failure->error.text);
 }
 
+/* Says which elements have broken in this step: a line for those of a kind and group that follow each other. */
+static void say_broken(tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    for (size_t k = 0; k < e->chunk_count;) {
+        const tl_element_set *set = &e->set[e->chunk[k].set], *other = set;
+        uint32_t broke = 0, first = 0;
+        while (other->kind == set->kind && other->group == set->group) {
+            if (broke == 0)
+                first = e->chunk[k].first_broke;
+            broke += e->chunk[k].broke;
+            if (++k == e->chunk_count)
+                break;
+            other = &e->set[e->chunk[k].set];
+        }
+        if (broke == 0)
+            continue;
+        const char *group = m->groups[set->group];
+        tl_model_say(m, "cycle %lld: %u element%s '%s'%s%s%s ha%s broken, %s %u", (long long)m->cycles + 1, broke,
+                     broke == 1 ? "" : "s", set->kind->name, *group ? " of group '" : "", group, *group ? "'" : "",
+                     broke == 1 ? "s" : "ve", broke == 1 ? "id" : "the first with id", e->table.id[first]);
+    }
+}
+
 tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
 {
     struct tl_elements *e = m->elements;
-    e->resting = e->any_steady && tl_steady_keeps(m);
+    const bool due = tl_elements_together_due(m);
+    e->resting = e->any_steady && !due && tl_steady_keeps(m);
     if (e->any_steady && !e->resting)
         tl_steady_bring(m);
     if (!e->resting || !e->all_steady)
         e->asked++;
-    const tl_status status = ask_all(m, failure);
+    tl_status status = due ? tl_elements_together(m, 0, true) : TL_OK;
+    if (status == TL_OK)
+        status = ask_all(m, failure);
     if (e->any_steady && !e->resting && status == TL_OK)
         tl_steady_take(m);
+    if (status == TL_OK)
+        say_broken(m);
     return status;
 }
 

@@ -73,7 +73,8 @@ typedef struct tl_node_table {
 typedef struct tl_element_chunk {
     uint32_t set, begin, end; /* rows of elements */
     uint32_t node_begin, node_end;
-    bool steady; /* the forces of its kind are kept while bodies hardly move: steady.c */
+    bool steady;                 /* the forces of its kind are kept while bodies hardly move: steady.c */
+    uint32_t broke, first_broke; /* how many have broken in this step, and the row of the first one */
 } tl_element_chunk;
 
 /* What steady elements do to each rigid body, in its own frame, and where it was. */

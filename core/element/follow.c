@@ -11,6 +11,7 @@
 #include "element/relay.h"
 #include "element/set.h"
 #include "element/steady.h"
+#include "model/rows.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -145,7 +146,8 @@ static bool list_chunks(struct tl_elements *e)
         const bool steady = e->carried_count == 0 && tl_element_ops_of(&e->set[t->set[row]])->steady;
         e->any_steady = e->any_steady || steady;
         e->all_steady = e->all_steady && steady;
-        e->chunk[e->chunk_count++] = (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end, steady};
+        e->chunk[e->chunk_count++] =
+            (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end, steady, 0, TL_NO_ROW};
     }
     return true;
 }
@@ -223,6 +225,7 @@ tl_status tl_elements_ready(tl_model *m)
     struct tl_elements *e = m->elements;
     if (!e)
         return TL_OK;
+    tl_rows_tidy(m); /* lists below hold rows of bodies */
     tl_elements_follow(m);
     tl_status status = tl_elements_lay_again(m);
     if (status != TL_OK)

@@ -3,9 +3,9 @@
  * Kinds with `lays_again` lie on what blocks have in common, such as walls of joints. They place again when blocks have
  * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
- * keeps the states and flags of the one that had its key; its nodes take those of the nearest old node on the same
- * block. Nodes of an element with a new key take those of the nearest old node of their call. Where nothing has moved
- * all are the same to the bit. */
+ * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on
+ * the same block. Nodes of an element with a new key take those of the nearest old node of their call. States that are
+ * RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -14,6 +14,8 @@
 #include "element/life.h"
 #include "element/place.h"
 #include "element/steady.h"
+#include "element/together.h"
+#include "plugin/loader.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,14 +78,17 @@ static bool is_taken(const keys *k, uint64_t key)
     return key && k->count && bsearch(&key, k->at, k->count, sizeof key, compare_keys);
 }
 
-/* Takes the keys of what has been placed, and leaves out what has a key that was taken before. */
+/* Takes the keys of what has been placed, and leaves out what has a key that was taken before: where all keys of a call
+ * were, what has none, too. */
 static bool take_keys(keys *k, tl_placing *p)
 {
-    size_t kept = 0;
+    size_t kept = 0, keyed = 0;
     for (size_t i = 0; i < p->placed_count; i++)
-        if (!is_taken(k, p->placed[i].key))
+        if (!is_taken(k, p->placed[i].key)) {
+            keyed += p->placed[i].key != 0;
             p->placed[kept++] = p->placed[i];
-    p->placed_count = kept;
+        }
+    p->placed_count = kept = keyed == 0 && kept < p->placed_count ? 0 : kept;
     if (!tl_grow(&k->at, &k->capacity, k->count + kept + 1, sizeof *k->at))
         return false;
     for (size_t i = 0; i < kept; i++)
@@ -92,10 +97,24 @@ static bool take_keys(keys *k, tl_placing *p)
     return true;
 }
 
+/* Elements without a key go, too, where all of their call that had one have gone: `number` of a set is scratch. */
+static void leave_rest(struct tl_elements *e, size_t first, unsigned char *keep)
+{
+    const tl_element_table *t = &e->table;
+    for (size_t k = 0; k < e->set_count; k++)
+        e->set[k].number = 0;
+    for (size_t row = 0; row < first; row++) /* 1: some have gone; 2: some stay */
+        e->set[t->set[row]].number |= !keep[row] ? 1 : t->key[row] ? 2 : 0;
+    for (size_t row = 0; row < first; row++)
+        if (e->set[t->set[row]].number == 1)
+            keep[row] = 0;
+}
+
 bool tl_elements_give_way(struct tl_elements *e, size_t first)
 {
     const tl_element_table *t = &e->table;
     const size_t rows = t->table.rows;
+    const char *plugin = tl_plugin_id(e->set[t->set[first]].kind);
     keys taken = {0};
     unsigned char *keep = malloc(rows + 1);
     const bool enough = keep && tl_grow(&taken.at, &taken.capacity, rows - first + 1, sizeof *taken.at);
@@ -104,8 +123,10 @@ bool tl_elements_give_way(struct tl_elements *e, size_t first)
     if (enough && taken.count > 1)
         qsort(taken.at, taken.count, sizeof *taken.at, compare_keys);
     for (size_t row = 0; row < rows && enough; row++)
-        keep[row] =
-            row >= first || e->set[t->set[row]].kind != e->set[t->set[first]].kind || !is_taken(&taken, t->key[row]);
+        keep[row] = row >= first || !tl_element_ops_of(&e->set[t->set[row]])->lays_again ||
+                    strcmp(tl_plugin_id(e->set[t->set[row]].kind), plugin) != 0 || !is_taken(&taken, t->key[row]);
+    if (enough)
+        leave_rest(e, first, keep);
     if (enough)
         tl_elements_keep(e, keep, false);
     free(taken.at);
@@ -144,21 +165,50 @@ static uint32_t nearest_node(const tl_node_table *n, uint32_t row, uint32_t begi
     return best;
 }
 
-/* Gives an element what an old one with its key had. Blocks have moved since forces were last asked for: nodes are
- * given that motion for the step to come. */
+/* Whether column `column` of the states of a kind, of nodes or of the whole, passes to elements that are placed
+ * again. */
+static bool passes(const tl_kind *kind, uint32_t column, bool whole)
+{
+    for (uint32_t k = 0; k < kind->state_count; k++)
+        if ((kind->states[k].kind == TL_STATE_WHOLE) == whole && column-- == 0)
+            return kind->states[k].transfer != TL_TRANSFER_RESET;
+    return false; /* the kind has fewer */
+}
+
+/* Which columns pass. */
+typedef struct passing {
+    bool node[TL_ELEMENT_COLUMNS], whole[TL_ELEMENT_COLUMNS];
+} passing;
+
+static passing passing_of(const tl_kind *kind)
+{
+    passing p;
+    for (uint32_t k = 0; k < TL_ELEMENT_COLUMNS; k++) {
+        p.node[k] = passes(kind, k, false);
+        p.whole[k] = passes(kind, k, true);
+    }
+    return p;
+}
+
+/* Gives an element what an old one with its key had, and its number. Blocks have moved since forces were last asked
+ * for: nodes are given that motion for the step to come. */
 static void inherit(tl_model *m, uint32_t row, uint32_t from)
 {
     struct tl_elements *e = m->elements;
     tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
+    const passing pass = passing_of(e->set[t->set[row]].kind);
+    t->id[row] = t->id[from];
     t->flags[row] = t->flags[from] & ~(uint32_t)TL_ELEMENT_DETACHED;
     t->stored[row] = t->stored[from];
     for (uint32_t k = 0; k < t->state_columns; k++)
-        t->state[k][row] = t->state[k][from];
+        if (pass.whole[k])
+            t->state[k][row] = t->state[k][from];
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
         const uint32_t old = nearest_node(n, k, t->node_begin[from], t->node_begin[from] + t->node_count[from]);
         for (uint32_t c = 0; old != TL_NO_ROW && c < n->state_columns; c++)
-            n->state[c][k] = n->state[c][old];
+            if (pass.node[c])
+                n->state[c][k] = n->state[c][old];
         for (int c = 0; old != TL_NO_ROW && c < 3; c++)
             n->force[c][k] = n->weight[old] > 0 ? n->force[c][old] * (n->weight[k] / n->weight[old]) : 0;
         if (old != TL_NO_ROW)
@@ -172,6 +222,7 @@ static void inherit_near(struct tl_elements *e, uint32_t row, uint32_t first)
 {
     const tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
+    const passing pass = passing_of(e->set[t->set[row]].kind);
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
         uint32_t best = TL_NO_ROW;
         double least = INFINITY;
@@ -183,7 +234,8 @@ static void inherit_near(struct tl_elements *e, uint32_t row, uint32_t first)
                 least = fmin(least, far);
             }
         for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++)
-            n->state[c][k] = n->state[c][best];
+            if (pass.node[c])
+                n->state[c][k] = n->state[c][best];
     }
 }
 
@@ -209,6 +261,58 @@ static bool inherit_all(tl_model *m, uint32_t first)
     }
     free(list);
     return true;
+}
+
+/* ---------------------------------------------------------------- order ------------------ */
+
+/* A row, by the number of its element. */
+typedef struct numbered {
+    tl_id id;
+    uint32_t row;
+} numbered;
+
+static int compare_ids(const void *a, const void *b)
+{
+    const tl_id x = ((const numbered *)a)->id, y = ((const numbered *)b)->id;
+    return (x > y) - (x < y);
+}
+
+/* Room to sort the rows that there are: NULL when out of memory. */
+static numbered *room_to_sort(struct tl_elements *e)
+{
+    numbered *list = malloc((e->table.table.rows + 1) * sizeof *list);
+    if (list && tl_table_reserve(&e->table.table, 2 * e->table.table.rows) &&
+        tl_table_reserve(&e->nodes.table, 2 * e->nodes.table.rows))
+        return list;
+    free(list);
+    return NULL;
+}
+
+/* Puts elements, and their nodes, in the order of their numbers, behind the others, and then moves them down. */
+static void sort_rows(struct tl_elements *e, numbered *list)
+{
+    tl_element_table *t = &e->table;
+    const uint32_t rows = (uint32_t)t->table.rows, nodes = (uint32_t)e->nodes.table.rows;
+    uint32_t next = nodes;
+    for (uint32_t row = 0; row < rows; row++)
+        list[row] = (numbered){t->id[row], row};
+    if (rows > 1)
+        qsort(list, rows, sizeof *list, compare_ids);
+    tl_table_resize(&t->table, 2 * (size_t)rows); /* there is room */
+    tl_table_resize(&e->nodes.table, 2 * (size_t)nodes);
+    for (uint32_t i = 0; i < rows; i++) {
+        const uint32_t begin = t->node_begin[list[i].row];
+        tl_table_move(&t->table, rows + i, list[i].row);
+        t->node_begin[rows + i] = next - nodes;
+        for (uint32_t k = 0; k < t->node_count[rows + i]; k++, next++)
+            tl_table_move(&e->nodes.table, next, begin + k);
+    }
+    for (uint32_t i = 0; i < rows; i++)
+        tl_table_move(&t->table, i, rows + i);
+    for (uint32_t i = 0; i < nodes; i++)
+        tl_table_move(&e->nodes.table, i, nodes + i);
+    tl_table_resize(&t->table, rows);
+    tl_table_resize(&e->nodes.table, nodes);
 }
 
 /* ---------------------------------------------------------------- again ------------------ */
@@ -241,9 +345,13 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     tl_steady_let_go(m);
     for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
         status = tl_placing_commit(&of[k], (uint32_t)k);
-    if (status == TL_OK && !inherit_all(m, before))
+    numbered *list = status == TL_OK ? room_to_sort(e) : NULL;
+    if (status == TL_OK && !(list && inherit_all(m, before)))
         status = tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = tl_elements_together(m, before, false);
     if (status != TL_OK) {
+        free(list);
         tl_table_resize(&e->table.table, before);
         tl_table_resize(&e->nodes.table, nodes);
         return status;
@@ -253,6 +361,8 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     for (size_t k = 0; k < e->set_count; k++)
         e->set[k].structure = m->structure;
     tl_elements_keep(e, keep, false);
+    sort_rows(e, list);
+    free(list);
     return TL_OK;
 }
 

@@ -16,12 +16,35 @@ static char **text_of(const tl_kind *kind, uint32_t k, void *params)
     return p->type == TL_PARAM_STRING ? (char **)(void *)((char *)params + p->offset) : NULL;
 }
 
-/* Takes copies of the texts, which are the caller's so far. false: out of memory; the rest is NULL then. */
-static bool keep_texts(const tl_kind *kind, void *params)
+/* Likewise the list of points. */
+static tl_points *points_of(const tl_kind *kind, uint32_t k, void *params)
+{
+    const tl_param *p = &kind->params[k];
+    return p->type == TL_PARAM_POINTS ? (tl_points *)(void *)((char *)params + p->offset) : NULL;
+}
+
+static bool keep_points(tl_points *points)
+{
+    const size_t bytes = points->count * sizeof *points->at;
+    tl_vec3 *own = points->count ? malloc(bytes) : NULL;
+    const bool enough = own || points->count == 0;
+    if (own)
+        memcpy(own, points->at, bytes);
+    *points = (tl_points){own, enough ? points->count : 0};
+    return enough;
+}
+
+/* Takes copies of texts and lists, which are the caller's so far. false: out of memory; the rest is NULL then. */
+static bool keep_lists(const tl_kind *kind, void *params)
 {
     bool enough = true;
     for (uint32_t k = 0; k < kind->param_count; k++) {
         char **text = text_of(kind, k, params);
+        tl_points *points = points_of(kind, k, params);
+        if (points && !enough)
+            *points = (tl_points){NULL, 0};
+        else if (points)
+            enough = keep_points(points);
         if (!text || !*text)
             continue;
         *text = enough ? strdup(*text) : NULL;
@@ -32,9 +55,13 @@ static bool keep_texts(const tl_kind *kind, void *params)
 
 static void free_params(const tl_kind *kind, void *params)
 {
-    for (uint32_t k = 0; k < kind->param_count; k++)
+    for (uint32_t k = 0; k < kind->param_count; k++) {
+        const tl_points *points = points_of(kind, k, params);
         if (text_of(kind, k, params))
             free(*text_of(kind, k, params));
+        if (points)
+            free((void *)(uintptr_t)points->at);
+    }
     free(params);
 }
 
@@ -69,7 +96,7 @@ tl_status tl_element_set_make(const tl_kind *kind, const tl_args *args, const tl
     if (status == TL_OK)
         status = tl_args_proportion(kind->params, kind->param_count, kind->param_stride, args, context, error);
     if (status != TL_OK) {
-        free(params); /* its texts are not its own yet */
+        free(params); /* its lists are not its own yet */
         return status;
     }
     out->params = params;
@@ -77,7 +104,7 @@ tl_status tl_element_set_make(const tl_kind *kind, const tl_args *args, const tl
         out->group = from->group;
         out->structure = from->structure;
     }
-    status = keep_texts(kind, params) ? create(out, context, error) : tl_fail_memory(error);
+    status = keep_lists(kind, params) ? create(out, context, error) : tl_fail_memory(error);
     if (status != TL_OK)
         tl_element_set_clear(out);
     return status;
@@ -89,7 +116,10 @@ void tl_element_set_hash(const tl_element_set *set, tl_hash *hash)
         const tl_param *p = &set->kind->params[k];
         const char *at = (const char *)set->params + p->offset;
         char *const *text = text_of(set->kind, k, set->params);
-        if (!text)
+        const tl_points *points = points_of(set->kind, k, set->params);
+        if (points)
+            tl_hash_bytes(hash, points->count ? (const void *)points->at : "", points->count * sizeof *points->at);
+        else if (!text)
             tl_hash_bytes(hash, at, tl_param_bytes(p->type));
         else
             tl_hash_bytes(hash, *text ? *text : "", *text ? strlen(*text) : 0);

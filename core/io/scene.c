@@ -11,6 +11,7 @@
 #include "force/bear.h"
 #include "io/extra_fields.h"
 #include "io/json.h"
+#include "io/scene_elements.h"
 #include "io/scene_put.h"
 #include "io/scene_zones.h"
 #include "io/verdict.h"
@@ -200,6 +201,7 @@ static void scene_head(const tl_model *m, const tl_html *options, const tl_scene
     put_histories(text, m);
     tl_json_put(text, "]");
     tl_scene_zones_head(m, text);
+    tl_scene_elements_head(m, text);
     tl_json_print(text, "%r%r}", scene->live ? ", \"live\": true" : "",
                   scene->live == TL_SCENE_COMMANDS ? ", \"commands\": true" : "");
 }
@@ -839,6 +841,8 @@ tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, t
         status = put_frame(m, out, &facts->largest);
     if (status == TL_OK)
         status = tl_scene_zones(m, out, &facts->largest);
+    if (status == TL_OK)
+        status = tl_scene_elements(m, out);
     if (status == TL_OK)
         status = put_block_fields(m, options, out);
     tl_verdict verdict;

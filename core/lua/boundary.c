@@ -20,7 +20,7 @@ typedef struct boundary_args {
     const char *side;
     tl_vec3 facing;
     double within, tolerance;
-    int32_t fixed, roller, rotation, quiet;
+    int32_t fixed, roller, rotation, quiet, free_field;
     const char *joint;
     double p_velocity, s_velocity, density;
     double pressure, water_level, unit_weight;
@@ -48,8 +48,13 @@ static const tl_param boundary_params[] = {
              "lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), of rigid blocks behind springs, and bears what "
              "it bore",
              .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, free_field, "",
+             "a vertical side of rigid blocks in level rows moves as the ground far away: as a column of such levels, "
+             "whose base is that of the call or is held",
+             .def = {0.0}),
     TL_PARAM(TL_PARAM_STRING, boundary_args, joint, "",
-             "of quiet rigid blocks: the joint whose law has the stiffness kn and ks of what was cut off; \"*\" when "
+             "of quiet rigid blocks and free fields: the joint whose law has the stiffness kn and ks of what was cut "
+             "off; \"*\" when "
              "left out",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, boundary_args, p_velocity, "m/s",
@@ -58,7 +63,7 @@ static const tl_param boundary_params[] = {
     TL_PARAM(TL_PARAM_REAL, boundary_args, s_velocity, "m/s", "likewise of shear waves",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .max = 1e50),
     TL_PARAM(TL_PARAM_REAL, boundary_args, density, "kg/m3",
-             "of what was cut off at quiet rigid blocks; that of the blocks when left out",
+             "of what was cut off at quiet rigid blocks and free fields; that of the blocks when left out",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .max = 1e50),
     TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, boundary_args, water_level, "m",
@@ -82,8 +87,9 @@ static const tl_lua_key boundary_keys[] = {
     {"velocity", "{x, y, z} or function(t)",
      "prescribes the velocity of the faces, m/s; rigid bodies move with it whole"},
     {"input", "{x, y, z}, each a record or 0",
-     "of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)"},
-    {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done", "several sides in one call"},
+     "of quiet faces: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)"},
+    {"xmin, xmax", "\"roller\", \"fixed\", \"free_field\" or a table of what is to be done",
+     "several sides in one call"},
     {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {"zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {NULL, NULL, NULL},
@@ -209,6 +215,7 @@ static void read_plane(lua_State *L, int index, tl_boundary_where *where)
 typedef struct asked {
     tl_boundary_action action;
     tl_drive drive;
+    bool free_field;
 } asked;
 
 /* Reads a velocity, or a function that gives one. */
@@ -249,8 +256,11 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
     const bool behind = args->joint || !isnan(args->p_velocity) || !isnan(args->s_velocity) || !isnan(args->density);
     const bool input = tl_lua_option(L, index, "input") != LUA_TNIL;
     lua_pop(L, 1);
-    if (!a->quiet && (behind || input))
+    if (!a->quiet && (input || (behind && !args->free_field)))
         tl_lua_fail(L, "boundary: joint, p_velocity, s_velocity, density and input go with quiet = true");
+    if (args->free_field && (a->quiet || a->fixed || a->roller))
+        tl_lua_fail(L, "boundary: a free field moves and lets waves out by itself: give it without quiet, fixed and "
+                       "roller");
     if (a->rotation && !a->roller)
         tl_lua_fail(L, "boundary: rotation is held with roller = true, or by fixed = true");
     a->loads = tl_lua_read_tensor(L, index, "boundary", "stress", &a->stress);
@@ -283,6 +293,7 @@ static void read_action(lua_State *L, int index, boundary_args *args, asked *of)
     tl_lua_spec spec = boundary_spec;
     spec.keys = table_keys;
     tl_lua_read(L, index, &spec, false, args);
+    of->free_field = args->free_field;
     if (args->side)
         a->where.side = tl_lua_side(L, "boundary", args->side);
     read_plane(L, index, &a->where);
@@ -307,6 +318,7 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, asked 
     const char *word = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
     boundary_args args;
     *a = tl_boundary_action_default();
+    of->free_field = false;
     if (lua_istable(L, -1)) {
         read_action(L, lua_gettop(L), &args, of);
         if (!is_anywhere(&a->where))
@@ -317,9 +329,12 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, asked 
         a->roller = true;
     else if (strcmp(word, "fixed") == 0)
         a->fixed = true;
+    else if (strcmp(word, "free_field") == 0)
+        of->free_field = true;
     else
-        tl_lua_fail(L, "boundary: %s must be \"roller\", \"fixed\" or a table of what is to be done, not %s", name,
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(
+            L, "boundary: %s must be \"roller\", \"fixed\", \"free_field\" or a table of what is to be done, not %s",
+            name, tl_lua_describe(L, -1));
     a->where.side = side;
     if (isnan(a->where.tolerance))
         a->where.tolerance = tolerance;
@@ -350,7 +365,7 @@ static size_t read_call(lua_State *L, asked *actions, bool *add)
 {
     *add = false;
     if (lua_type(L, 2) == LUA_TSTRING) {
-        actions[0].action = tl_boundary_action_default();
+        actions[0] = (asked){.action = tl_boundary_action_default()};
         actions[0].action.where.side = tl_lua_side(L, "boundary", lua_tostring(L, 2));
         return 0;
     }
@@ -361,7 +376,7 @@ static size_t read_call(lua_State *L, asked *actions, bool *add)
     read_action(L, 2, &args, &one);
     *add = args.add;
     size_t count = read_sides(L, args.tolerance, actions);
-    if (count && (!is_anywhere(&one.action.where) || !does_nothing(&one.action)))
+    if (count && (!is_anywhere(&one.action.where) || !does_nothing(&one.action) || one.free_field))
         tl_lua_fail(L, "boundary: with xmin and the like only tolerance and add are given beside; "
                        "what is to be done goes into their tables");
     if (!count && is_anywhere(&one.action.where))
@@ -405,12 +420,13 @@ static int model_boundary(lua_State *L, tl_model *model)
 {
     asked given[SIDES];
     tl_boundary_action actions[SIDES], found[SIDES];
-    bool add;
+    bool add, free_field[SIDES], planned[SIDES];
     size_t sides = read_call(L, given, &add);
     size_t count = sides ? sides : 1;
     for (size_t i = 0; i < count; i++) {
         actions[i] = given[i].action;
         actions[i].drive = actions[i].drive ? &given[i].drive : NULL;
+        free_field[i] = given[i].free_field;
         found[i] = actions[i];
         found[i].loads = found[i].fixed = found[i].roller = found[i].quiet = false;
         found[i].drive = NULL;
@@ -418,14 +434,11 @@ static int model_boundary(lua_State *L, tl_model *model)
     holder *h = push_holder(L), *done = push_holder(L);
     tl_lua_ok(L, model, tl_model_boundary(model, found, count, add, h->result));
     tl_lua_quiet quiet[SIDES];
-    size_t quiets = 0;
+    const tl_lua_sides call = {actions, h->result, free_field, count, add, sides > 0};
+    const size_t quiets = tl_lua_quiet_plan(L, model, &call, quiet, planned);
     bool acts = false;
     for (size_t i = 0; i < count; i++) {
-        const char *side = sides ? name_of(actions[i].where.side) : NULL;
-        if (tl_lua_quiet_plan(L, model, side, actions, h->result, count, i, &quiet[quiets])) {
-            actions[i].quiet = false;
-            quiets++;
-        }
+        actions[i].quiet = actions[i].quiet && !planned[i];
         acts = acts || !does_nothing(&actions[i]);
     }
     if (sides)
@@ -452,7 +465,8 @@ const tl_lua_topic tl_lua_boundary_topics[] = {
             "When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are "
             "meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle "
             "takes the place of all that was done to it before, or with add is added. Quiet faces of rigid blocks are "
-            "elements of the kind quiet: model:elements{kind = \"quiet\"}. A body that was held is let go, and bears "
+            "elements of the kind quiet: model:elements{kind = \"quiet\"}; those of a free field are of the kind "
+            "free_field. A body that was held is let go, and bears "
             "on as a load what held it: across the face, or in all components if it was held in all.",
      .spec = &boundary_spec,
      .title = "Fields of the result",

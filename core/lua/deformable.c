@@ -65,7 +65,7 @@ static double edge_at(void *user, tl_vec3 place)
     lua_pushcfunction(L, call_edge);
     lua_pushlightuserdata(L, of);
     lua_pushvalue(L, AT_FUNCTION);
-    if (tl_lua_call_reading(L, of->owner, 2) == LUA_OK)
+    if (tl_lua_call_reading(L, of->owner, 2, 0) == LUA_OK)
         return of->edge;
     of->failed = true;
     lua_replace(L, AT_ERROR);

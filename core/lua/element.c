@@ -167,7 +167,11 @@ static bool extra(lua_State *L, tl_model *model, const tl_lua_item *item, const 
     if (strcmp(name, "params") == 0) {
         lua_createtable(L, 0, (int)info.kind->param_count);
         for (uint32_t k = 0; k < info.kind->param_count; k++) {
-            tl_lua_push_param(L, &info.kind->params[k], info.params);
+            const tl_param *param = &info.kind->params[k];
+            if (param->type == TL_PARAM_STRING) /* NULL gives nil */
+                lua_pushstring(L, *(char *const *)(const void *)((const char *)info.params + param->offset));
+            else
+                tl_lua_push_param(L, param, info.params);
             lua_setfield(L, -2, info.kind->params[k].name);
         }
         return true;

@@ -316,7 +316,7 @@ static int history_take(lua_State *L, int model_index, tl_history *h)
     lua_pushvalue(L, model_index);
     lua_pushlightuserdata(L, h);
     lua_pushnil(L);
-    return tl_lua_call_reading(L, owner, 3);
+    return tl_lua_call_reading(L, owner, 3, 0);
 }
 
 /* ---------------------------------------------------------------- model:history ---------- */

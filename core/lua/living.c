@@ -100,12 +100,12 @@ void tl_lua_ok(lua_State *L, tl_model *model, tl_status status)
         tl_lua_raise(L, tl_model_error(model));
 }
 
-int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments)
+int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments, int results)
 {
     bool outer = owner->sampling;
     owner->sampling = true;
     tl_model_only_read(owner->model, true);
-    int status = lua_pcall(L, arguments, 0, 0);
+    int status = lua_pcall(L, arguments, results, 0);
     tl_model_only_read(owner->model, outer);
     owner->sampling = outer;
     return status;

@@ -22,8 +22,8 @@ tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner);
 /* Raises the model's error unless `status` is TL_OK. */
 void tl_lua_ok(lua_State *L, tl_model *model, tl_status status);
 
-/* lua_pcall of a function of the script, without results, while the model may only be read. */
-int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments);
+/* lua_pcall of a function of the script, for so many results, while the model may only be read. */
+int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments, int results);
 
 /* Makes a run the one whose step is being made, NULL: none; gives the one that was. */
 tl_lua_running *tl_lua_running_set(tl_lua_running *run);

@@ -7,6 +7,7 @@
 #include "lua/joint.h"
 #include "lua/living.h"
 #include "lua/quality.h"
+#include "lua/quiet.h"
 #include "lua/run.h"
 #include "lua/view.h"
 #include "lua/zones.h"
@@ -61,6 +62,7 @@ static int model_damping(lua_State *L, tl_model *model)
     tl_args args;
     tl_lua_args(L, 3, lua_pushfstring(L, "damping '%s'", damping), NULL, &args);
     tl_lua_ok(L, model, tl_model_damping(model, damping, &args));
+    tl_lua_free_field_damp(L, model);
     return 0;
 }
 

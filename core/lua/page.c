@@ -148,11 +148,24 @@ static void ask_function(lua_State *L, request *r, tl_extra_field *field)
     lua_pushlightuserdata(L, r);
     lua_pushlightuserdata(L, field);
     lua_pushvalue(L, 1);
-    if (tl_lua_call_reading(L, r->items->owner, 4) != LUA_OK)
+    if (tl_lua_call_reading(L, r->items->owner, 4, 0) != LUA_OK)
         tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name, luaL_tolstring(L, -1, NULL));
 }
 
-/* The values that the table at the top of the stack has under the numbers of the items. It pops the table. */
+/* The length of the vector {x, y, z} at the top of the stack; NaN: there is none. */
+static double length_at(lua_State *L)
+{
+    double sum = 0;
+    for (lua_Integer i = 1; i <= 3; i++) {
+        lua_rawgeti(L, -1, i);
+        sum += lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) * lua_tonumber(L, -1) : (double)NAN;
+        lua_pop(L, 1);
+    }
+    return sqrt(sum);
+}
+
+/* The values that the table at the top of the stack has under the numbers of the items: of vectors their lengths. It
+ * pops the table. */
 static void look_up(lua_State *L, const request *r, tl_extra_field *field, double *values)
 {
     for (size_t i = 0; i < r->items->count; i++) {
@@ -160,10 +173,11 @@ static void look_up(lua_State *L, const request *r, tl_extra_field *field, doubl
         const lua_Integer number = r->kind->number(&item.name);
         lua_pop(L, 1);
         const int type = lua_rawgeti(L, -1, number);
-        if (type != LUA_TNUMBER && type != LUA_TNIL)
-            tl_lua_fail(L, "%s: %s: '%s' has %s for %s %I, and not a number", r->context, r->key, field->name,
-                        tl_lua_describe(L, -1), r->kind->item, number);
-        values[i] = type == LUA_TNIL || isinf(lua_tonumber(L, -1)) ? NAN : lua_tonumber(L, -1);
+        const double length = type == LUA_TTABLE ? length_at(L) : NAN;
+        if (type != LUA_TNUMBER && type != LUA_TNIL && isnan(length))
+            tl_lua_fail(L, "%s: %s: '%s' has %s for %s %I, and not a number or a vector {x, y, z}", r->context, r->key,
+                        field->name, tl_lua_describe(L, -1), r->kind->item, number);
+        values[i] = type == LUA_TNUMBER ? lua_tonumber(L, -1) : length;
         lua_pop(L, 1);
     }
     lua_pop(L, 1);

@@ -58,7 +58,7 @@ static int release(lua_State *L)
 static double number_at(lua_State *L, int index, const char *what)
 {
     if (lua_type(L, index) != LUA_TNUMBER || !isfinite(lua_tonumber(L, index)))
-        tl_lua_fail(L, "record: %s must be a finite number, not %s", what, tl_lua_describe(L, index));
+        tl_lua_fail(L, "record: %s must be a finite number: it is %s", what, tl_lua_describe(L, index));
     return lua_tonumber(L, index);
 }
 

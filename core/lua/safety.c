@@ -83,7 +83,7 @@ static tl_status on_trial(void *user, const tl_safety_trial *trial)
     lua_pushcfunction(L, call_trial);
     lua_pushvalue(L, AT_TRIAL);
     lua_pushlightuserdata(L, (void *)(uintptr_t)trial);
-    c->failed = tl_lua_call_reading(L, c->owner, 2) != LUA_OK;
+    c->failed = tl_lua_call_reading(L, c->owner, 2, 0) != LUA_OK;
     return c->failed ? TL_E_CANCELLED : TL_OK;
 }
 

@@ -261,27 +261,53 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
     case TL_VIEW_SNAPSHOT:
         lua_pushfstring(L, "model:save(%s)", quoted(L, lua_pushfstring(L, "%s%s", prefix, cycle)));
         break;
-    case TL_VIEW_SAFETY: lua_pushliteral(L, "model:factor_of_safety {}.message"); break;
+    case TL_VIEW_SAFETY: lua_pushliteral(L, "model:factor_of_safety {}"); break;
     default: push_verb_line(L, model, command);
     }
 }
 
 /* ---------------------------------------------------------------- commands --------------- */
 
+/* Limit: blocks that a finding names. */
+#define NAMED 256
+
+/* Adds to the line at the top of the stack what a search for a factor of safety has found, below it, as a comment. */
+static void add_finding(lua_State *L)
+{
+    const int result = lua_gettop(L) - 1;
+    luaL_Buffer line;
+    lua_getfield(L, result, "message");
+    lua_getfield(L, result, "failing");
+    lua_pushfstring(L, "%s -- %s", lua_tostring(L, result + 1), lua_tostring(L, -2));
+    const lua_Integer count = luaL_len(L, -2);
+    luaL_buffinit(L, &line);
+    for (lua_Integer i = 1; i <= count && i <= NAMED; i++) {
+        lua_geti(L, result + 3, i);
+        lua_getfield(L, -1, "id");
+        lua_pushfstring(L, i > 1 ? ", %I" : "; blocks %I", lua_tointeger(L, -1));
+        lua_copy(L, -1, -3);
+        lua_pop(L, 2);
+        luaL_addvalue(&line);
+    }
+    luaL_pushresult(&line);
+    lua_concat(L, 2);
+}
+
 /* Runs protected: finds the line of a command, does it and gives it. Arguments: the model, the command. */
 static int do_line(lua_State *L)
 {
+    const bool finds = ((const tl_view_command *)lua_touserdata(L, 2))->op == TL_VIEW_SAFETY;
     push_line(L, model_of(L), lua_touserdata(L, 2), view_of(L)->prefix);
-    const bool asks = ((const tl_view_command *)lua_touserdata(L, 2))->op == TL_VIEW_SAFETY;
     int line = lua_gettop(L);
-    const char *text = lua_pushfstring(L, "local model = ... %s%s", asks ? "return " : "", lua_tostring(L, line));
+    const char *text = lua_pushfstring(L, "local model = ... %s%s", finds ? "return " : "", lua_tostring(L, line));
     if (luaL_loadbuffer(L, text, strlen(text), "=" CHUNK) != LUA_OK)
         return lua_error(L);
     lua_pushvalue(L, TL_LUA_AT_MODEL);
-    lua_call(L, 1, asks);
-    if (asks) { /* the answer stands behind the line that asks for it */
-        lua_pushfstring(L, "print(%s) --> %s", lua_tostring(L, line), lua_tostring(L, -1));
-        lua_replace(L, line);
+    lua_call(L, 1, finds);
+    if (finds) {
+        lua_pushvalue(L, line);
+        add_finding(L);
+        return 1;
     }
     lua_settop(L, line);
     return 1;

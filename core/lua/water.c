@@ -4,6 +4,7 @@
 #include "lua/convert.h"
 #include "lua/element.h"
 #include "lua/fail.h"
+#include "lua/flow.h"
 #include "lua/item.h"
 #include "lua/living.h"
 
@@ -50,7 +51,8 @@ static void push_parameters(lua_State *L, const char *source)
     lua_setfield(L, to, "source");
 }
 
-/* Asks the function at index `function` for the pressures at some places: a list of them is pushed. */
+/* Asks the function at index `function` for the pressures at some places: a list of them is pushed. The places are
+ * those of nodes to come, so the function may only read the model. */
 static double *ask_pressures(lua_State *L, tl_model *model, int function, const tl_args *args)
 {
     tl_vec3 *places;
@@ -64,7 +66,8 @@ static double *ask_pressures(lua_State *L, tl_model *model, int function, const 
         lua_pushvalue(L, function);
         for (int k = 0; k < 3; k++)
             lua_pushnumber(L, held[3 * i + (size_t)k]);
-        lua_call(L, 3, 1);
+        if (tl_lua_call_reading(L, lua_touserdata(L, 1), 3, 1) != LUA_OK)
+            lua_error(L);
         pressure[i] = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
         if (!(pressure[i] >= 0) || isinf(pressure[i]))
             tl_lua_fail_in(L, function, "water: pressure must give a number of at least 0, Pa: it gave %s",
@@ -91,14 +94,18 @@ static tl_status put_pressures(tl_model *model, const tl_lua_selection *made, co
 /* Takes all water away. */
 static int drain(lua_State *L, tl_model *model)
 {
-    tl_element_filter filter = {.size = sizeof filter, .kind = KIND};
-    tl_lua_selection *all = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
-    tl_id *ids = NULL;
-    const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
-    all->names = ids;
-    tl_lua_ok(L, model, status);
-    tl_lua_ok(L, model, tl_elements_delete(model, ids, all->count));
-    all->count = 0;
+    const char *const kinds[] = {KIND, TL_LUA_FLOW};
+    tl_lua_selection *all = NULL;
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        tl_element_filter filter = {.size = sizeof filter, .kind = kinds[k]};
+        all = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
+        tl_id *ids = NULL;
+        const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
+        all->names = ids;
+        tl_lua_ok(L, model, status);
+        tl_lua_ok(L, model, tl_elements_delete(model, ids, all->count));
+        all->count = 0;
+    }
     return 1;
 }
 
@@ -108,6 +115,8 @@ static int model_water(lua_State *L, tl_model *model)
     if (strcmp(source, "none") == 0 && lua_isnil(L, 3))
         return drain(L, model);
     push_parameters(L, source);
+    if (strcmp(source, TL_LUA_FLOW) == 0)
+        return tl_lua_flow_place(L, model);
     const int table = lua_gettop(L), function = table + 1;
     const bool field = strcmp(source, "field") == 0;
     if (lua_getfield(L, table, "pressure") == LUA_TFUNCTION && field) {
@@ -140,6 +149,20 @@ static const tl_lua_key keys[] = {
     {"pressure", "number or function(x, y, z)",
      "uniform pressure, Pa; or of a field, asked once for each node and then kept"},
     {"joints", "name or list of names", "joints that have this water, \"A\", \"A:3\" or \"*\"; all when left out"},
+    {"aperture", "number, {JOINT = number} or function(x, y, z)",
+     "of \"flow\", m: hydraulic aperture of walls that just touch, of all joints, by joint with \"*\" for the others, "
+     "or "
+     "asked once for each wet joint, at its middle; it grows as the joint opens and falls as it closes"},
+    {"residual", "number", "likewise: least aperture; 2e-5 when left out"},
+    {"maximum", "number", "likewise: largest aperture that counts; 2e-3 when left out"},
+    {"viscosity", "number", "likewise, Pa s; 1e-3 when left out"},
+    {"heads", "list of {inside = {min = {x, y, z}, max = {x, y, z}}, head = number}",
+     "likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box"},
+    {"drains", "list of {{x, y, z}, {x, y, z}, radius}", "likewise: holes of a radius, m, in which the pressure is 0"},
+    {"steady", "boolean", "likewise: true, when left out: water is in balance; false: joints store water"},
+    {"every", "number", "likewise: steps between two solutions of steady flow; 100 when left out"},
+    {"bulk", "number", "likewise: bulk modulus of water that is stored, Pa; 2e9 when left out"},
+    {"initial_head", "number", "likewise: head at the beginning where flow is not steady; without it pressure is 0, m"},
     {"drain_gap", "number", "mean opening beyond which a joint runs dry, m; 0.05 when left out"},
     {NULL, NULL, NULL},
 };
@@ -149,15 +172,25 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .usage =
          "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
          "{\"J1\"}})  or  model:water(\"field\", {pressure = function(x, y, z) return 9810 * z end})  or  "
-         "model:water(\"none\")",
+         "model:water(\"none\")  or  model:water(\"flow\", {aperture = 2e-4, heads = {{inside = BOX, head = 20}}})",
      .doc =
          "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
          "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "
          "it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; "
-         "then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements "
+         "then it is dry. Of \"flow\" pressures are found by the cubic law, between heads and drains, with apertures "
+         "that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks "
+         "take water as a force. The elements "
          "have the states area, opening and dry, their nodes pressure.",
      .keys = keys,
      .arguments = 2,
      .method = model_water},
+    {.name = "flow",
+     .usage = "result = model:flow()",
+     .doc =
+         "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
+         "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "
+         "flow, head and closed; and closed, how many of them reach neither a head nor a drain.",
+     .arguments = 0,
+     .method = tl_lua_model_flow},
     {.name = NULL},
 };

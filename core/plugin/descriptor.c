@@ -72,7 +72,7 @@ static const struct {
                        {{AT(tl_solid_ops, update)}, {AT(tl_solid_ops, moduli)}},
                        {{AT(tl_solid_ops, create)}, {AT(tl_solid_ops, destroy)}}},
     [TL_KIND_ELEMENT] = {"element",
-                         sizeof(tl_element_ops),
+                         offsetof(tl_element_ops, together),
                          sizeof(tl_element_ops),
                          {{AT(tl_element_ops, place)}, {AT(tl_element_ops, update)}, {AT(tl_element_ops, stiffness)}},
                          {{AT(tl_element_ops, create)}, {AT(tl_element_ops, destroy)}}},
@@ -225,7 +225,7 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
         return tl_fail(error, TL_E_PLUGIN,
                        "parameter '%s' is a list of points in space: a solid takes tables, with TL_PARAM_FLAT",
                        p->name);
-    bool kept = kind->type == TL_KIND_ELEMENT && p->type == TL_PARAM_STRING;
+    bool kept = kind->type == TL_KIND_ELEMENT;
     if (kind->type != TL_KIND_GENERATOR && !table && !kept &&
         (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
         return tl_fail(error, TL_E_PLUGIN,
@@ -277,7 +277,8 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
                        : kind->type == TL_KIND_SOLID   ? ", an axis or a tensor"
                        : kind->type == TL_KIND_ELEMENT ? ", of a node or of the whole"
                                                        : "");
-    if ((kind->type == TL_KIND_SOLID || kind->type == TL_KIND_ELEMENT) && s->transfer != TL_TRANSFER_COPY)
+    const bool anew = kind->type == TL_KIND_ELEMENT && s->transfer == TL_TRANSFER_RESET;
+    if ((kind->type == TL_KIND_SOLID || kind->type == TL_KIND_ELEMENT) && s->transfer != TL_TRANSFER_COPY && !anew)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' of %s must have TL_TRANSFER_COPY: %s stay what they are",
                        s->name, kind->type == TL_KIND_SOLID ? "a solid" : "an element",
                        kind->type == TL_KIND_SOLID ? "zones" : "nodes");

@@ -72,6 +72,12 @@ static double gridpoints_of(const tl_model *m, uint32_t body)
     return mesh ? mesh->point_end - mesh->point_begin : 0;
 }
 
+static double held_of(const tl_model *m, uint32_t body)
+{
+    const unsigned some = mesh_of(m, body) ? 0 : m->bodies.fixed[body];
+    return tl_body_is_held(m, body) ? TL_FIX_ALL : some;
+}
+
 /* The fields: name, kind, unit, what they are, and their value. It is that of the block in `row` of the blocks b, or
  * of its `body`. */
 #define BLOCK_FIELDS(FIELD)                                                                                            \
@@ -93,6 +99,8 @@ static double gridpoints_of(const tl_model *m, uint32_t body)
     FIELD(moment, VEC3, "N m", "unbalanced moment about its body's centroid", bodies->moment[body])                    \
     FIELD(fixed, BOOL, "", "whether its body, or all its gridpoints, are held in every component",                     \
           tl_body_is_held(m, body))                                                                                    \
+    FIELD(held, COUNT, "", "components of its body that are held: 1 x, 2 y, 4 z, 8 rotation, added up",                \
+          held_of(m, body))                                                                                            \
     FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                                          \
     FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])                      \
     FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(velocity(m, row)))                                \

@@ -6,9 +6,11 @@
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
- * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What is
- * not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter,
- * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
+ * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What
+ * is not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become
+ * shorter, or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
+ * What elements hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise
+ * of their force would bear what drives it after CAUGHT of its radius.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
  * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
@@ -73,6 +75,8 @@
 #define STIFFEST 1000.0
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
+/* Tolerance: way over the radius of a body within which elements that tighten are to stop it. */
+#define CAUGHT 0.1
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
 /* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests. */
@@ -316,15 +320,19 @@ typedef struct look {
     tl_vec3 start, last; /* displacements */
     tl_quat turned;      /* when it began */
     double way;          /* between the last two looks, m */
+    double corner;       /* how far its corners had gone by rotation at the last look, m */
     int32_t grows;       /* looks in a row in which it did not become slower */
+    tl_vec3 pulled;      /* force of elements at the last look, N */
+    tl_vec3 from;        /* displacement when elements tightened last, or at the start */
 } look;
 
 typedef struct watch {
     const tl_trials *t;
-    look *look;     /* [bodies] */
-    int64_t looked; /* cycle of the last look */
-    int32_t still;  /* looks in a row in which all bodies stood still */
-    bool trial;     /* of a trial, not of a first copy */
+    look *look;       /* [bodies] */
+    tl_vec3 *pull;    /* [bodies], force of elements now, N */
+    int64_t looked;   /* cycle of the last look */
+    int32_t still;    /* looks in a row in which all bodies stood still */
+    bool rigid_trial; /* of a trial, not of a first copy, and no block deforms */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     bool strained; /* ... for it is strained on and on */
@@ -338,10 +346,35 @@ static tl_status on_step(void *user, tl_model *copy)
     return tl_model_interrupted(w->t->asked) ? TL_E_CANCELLED : TL_OK;
 }
 
+static bool is_far(const watch *w, const tl_model *copy, uint32_t body)
+{
+    const tl_vec3 gone = tl_v3_sub(copy->bodies.pose[body].u, w->look[body].from);
+    return tl_v3_norm(gone) > FAR * w->t->settles;
+}
+
+/* Whether elements stop a body that has gone by u since the last look: the work of what drives it on, over the rise of
+ * their force, is short. */
+static bool is_caught(const watch *w, const tl_model *copy, uint32_t body, tl_vec3 u)
+{
+    const tl_vec3 rise = tl_v3_sub(w->pull[body], w->look[body].pulled);
+    const double way2 = tl_v3_norm2(u), tightens = -tl_v3_dot(rise, u);
+    if (!(way2 > 0 && tightens > 0))
+        return false;
+    const double driven = tl_v3_dot(copy->bodies.force[body], u);
+    return driven * sqrt(way2) <= tightens * CAUGHT * copy->bodies.radius[body];
+}
+
+/* How far the corners of a body have gone by rotation, m. */
+static double turned_of(const tl_model *m, const look *l, uint32_t body)
+{
+    const tl_quat by = tl_q_mul(m->bodies.q[body], tl_q_conj(l->turned));
+    return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
+}
+
 /* Whether all bodies have stood still in so many looks. */
 static bool stands_still(const watch *w)
 {
-    return w->trial && w->still >= STILLS;
+    return w->rigid_trial && w->still >= STILLS;
 }
 
 /* Looks at all bodies; true when some one fails, or all stand still. */
@@ -351,6 +384,7 @@ static bool looks(void *user, tl_model *copy)
     const double settles = w->t->settles;
     bool still = true;
     w->looked = copy->cycles;
+    tl_elements_pull(copy, w->pull);
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++) {
         look *l = &w->look[body];
         const tl_vec3 u = copy->bodies.pose[body].u;
@@ -358,11 +392,17 @@ static bool looks(void *user, tl_model *copy)
         if (!tl_body_is_free(copy, body))
             continue;
         const bool grows = far > SUSPECT * settles && way >= l->way && way > STANDS * settles;
-        l->grows = grows ? l->grows + 1 : 0;
+        const bool caught = is_caught(w, copy, body, tl_v3_sub(u, l->last));
+        l->grows = grows && !caught ? l->grows + 1 : 0;
         l->last = u;
         l->way = way;
-        still = still && way <= STILL * settles;
-        if (l->grows < GROWS && far <= FAR * settles)
+        const double corner = turned_of(copy, l, body);
+        still = still && way + fabs(corner - l->corner) <= STILL * settles;
+        l->corner = corner;
+        l->pulled = w->pull[body];
+        if (caught)
+            l->from = u;
+        if (l->grows < GROWS && !is_far(w, copy, body))
             continue;
         if (!w->fails)
             w->why = l->grows >= GROWS ? "goes on" : "far";
@@ -372,25 +412,34 @@ static bool looks(void *user, tl_model *copy)
     return w->fails || stands_still(w);
 }
 
+static void watch_end(watch *w)
+{
+    free(w->look);
+    free(w->pull);
+    w->look = NULL;
+    w->pull = NULL;
+}
+
 static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
 {
     *w = (watch){.t = t,
                  .looked = copy->cycles,
                  .verdict = TL_NO_ID,
-                 .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
-    for (uint32_t body = 0; w->look && body < copy->bodies.table.rows; body++)
+                 .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look),
+                 .pull = calloc(copy->bodies.table.rows + 1, sizeof *w->pull)};
+    if (!w->look || !w->pull) {
+        watch_end(w);
+        return false;
+    }
+    tl_elements_pull(copy, w->pull);
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         w->look[body] = (look){.body = copy->bodies.id[body],
                                .start = copy->bodies.pose[body].u,
+                               .from = copy->bodies.pose[body].u,
                                .last = copy->bodies.pose[body].u,
-                               .turned = copy->bodies.q[body]};
-    return w->look != NULL;
-}
-
-/* How far the corners of a body have gone by rotation, m. */
-static double turned_of(const tl_model *m, const look *l, uint32_t body)
-{
-    const tl_quat by = tl_q_mul(m->bodies.q[body], tl_q_conj(l->turned));
-    return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
+                               .turned = copy->bodies.q[body],
+                               .pulled = w->pull[body]};
+    return true;
 }
 
 static double gone_of(const watch *w, const tl_model *m, uint32_t body)
@@ -401,7 +450,7 @@ static double gone_of(const watch *w, const tl_model *m, uint32_t body)
 static bool body_fails(const watch *w, const tl_model *m, uint32_t body)
 {
     const look *l = &w->look[body];
-    return l->body == w->verdict || l->grows >= GROWS || gone_of(w, m, body) > FAR * w->t->settles;
+    return l->body == w->verdict || l->grows >= GROWS || is_far(w, m, body);
 }
 
 /* The fastest of the bodies that fail; where none does, of all. */
@@ -515,12 +564,12 @@ static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
         return status;
     if (!watch_begin(&next, w->t, copy))
         return tl_fail_memory(&w->t->asked->error);
-    next.trial = w->trial;
+    next.rigid_trial = w->rigid_trial;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         for (size_t row = 0; row < before; row++)
             if (old[row].body == next.look[body].body)
                 next.look[body] = old[row];
-    free(w->look);
+    watch_end(w);
     *w = next;
     return TL_OK;
 }
@@ -562,7 +611,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
-    w.trial = !leaps;
+    w.rigid_trial = !leaps && !tl_model_deforms(copy);
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
         tl_relax_result r;
@@ -588,7 +637,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
     for (uint32_t body = 0; status == TL_OK && body < copy->bodies.table.rows; body++)
         if (tl_body_is_free(copy, body))
             t->moved = fmax(t->moved, gone_of(&w, copy, body) / t->settles);
-    free(w.look);
+    watch_end(&w);
     return status;
 }
 

@@ -74,9 +74,19 @@ function bolted.main(folder)
         print(("   %5d  %9.0f  %12.0f   %5s   %11.2f   %8.0f"):format(#r.bolts, yield / 1e3, #r.bolts * yield / 1e3, r.holds,
             1e3 * r.settled, bears))
         if r.holds then
-            r.model:write_vtk(folder .. "/bolted_roof")
+            bolted.show(r.model, folder)
         end
     end
+    print(("\n%s/bolted_roof.html shows bolts and factors of those that hold"):format(folder))
+end
+
+-- Adds a frame with the factor of safety of each block that can move: bolts keep their strengths, joints are divided.
+function bolted.show(model, folder)
+    local map = model:safety_map { from = 0.5, to = 3, step = 0.25 }
+    local field = { block_fields = { safety = map.factor } }
+    model:write_vtk(folder .. "/bolted_roof", field)
+    field.title = "Bolts in a roof"
+    model:write_html(folder .. "/bolted_roof", field)
 end
 
 -- A test that says require "examples.bolted_roof" wants the functions only.

@@ -1,6 +1,6 @@
 -- masonry_earthquake.lua - a free-standing wall of bricks on ground that shakes across it.
 --
---     build/release/talus scripts/examples/masonry_earthquake.lua [folder]
+--     build/release/talus scripts/examples/masonry_earthquake.lua [FOLDER] [PEAK]
 --
 -- The wall settles, its small vibrations tell how stiff it is, and the ground follows a record. Joints have no mortar: they
 -- slide and open. Bricks touch at their corners, and dashpots at the contacts take up what bricks strike with when they rock
@@ -49,7 +49,7 @@ function wall.record(peak)
     return talus.record { at = at, dt = 0.01, scale = peak / most, baseline = "parabola" }
 end
 
--- Shakes the wall for a time, s. Gives times, ways of the ground and of the top against it, and the energy that dashpots took.
+-- Shakes the wall for a time, s, or until it has fallen: run.fell. Gives times, ways of the ground and of the top against it, and the energy that dashpots took.
 function wall.shake(model, record, time)
     local ground = model:blocks { group = "ground" }
     local top = model:blocks { group = "wall" }
@@ -66,13 +66,17 @@ function wall.shake(model, record, time)
         local n, moved = #run.time + 1, ground[1].displacement[2]
         run.time[n], run.ground[n] = model.time - start, 1000 * moved
         run.top[n] = 1000 * (highest.displacement[2] - moved)
+        if math.abs(run.top[n]) > 2000 * wall.brick[2] then -- it has fallen
+            run.fell = run.time[n]
+            break
+        end
     end
     run.damped = model:energy().damping
     return run
 end
 
-function wall.main(folder)
-    local model, record = wall.build(), wall.record(3)
+function wall.main(folder, peak)
+    local model, record = wall.build(), wall.record(peak)
     model:relax { ratio = 1e-5 }
     for k, mode in ipairs(model:modes { count = 3 }) do
         print(string.format("vibration %d: %5.1f Hz, %2.0f %% of the mass goes with the ground across the wall", k,
@@ -85,7 +89,8 @@ function wall.main(folder)
     for _, way in ipairs(run.top) do
         most = math.max(most, math.abs(way))
     end
-    print(string.format("the top goes %.1f mm against the ground, and stays at %.1f mm", most, run.top[#run.top]))
+    print(run.fell and string.format("the wall has fallen after %.1f s", run.fell)
+        or string.format("the top goes %.1f mm against the ground, and stays at %.1f mm", most, run.top[#run.top]))
     local spectrum = record:spectrum(0.05)
     talus.plot { file = folder .. "/spectrum.svg", title = "Record, 5 % of critical damping",
         series = { { name = "record", x = spectrum.period, y = spectrum.acceleration } },
@@ -93,12 +98,12 @@ function wall.main(folder)
     talus.plot { file = folder .. "/top.svg", title = "A wall in an earthquake",
         series = { { name = "ground", x = run.time, y = run.ground }, { name = "top against it", x = run.time, y = run.top } },
         x_axis = { name = "time", unit = "s" }, y_axis = { name = "displacement across the wall", unit = "mm" } }
-    model:write_html(folder .. "/wall", { title = "A wall after an earthquake" })
-    print(string.format("%s/top.svg, spectrum.svg and wall.html show it", folder))
+    model:write_html(folder .. "/masonry_earthquake", { title = "A wall after an earthquake" })
+    print(string.format("%s/top.svg, spectrum.svg and masonry_earthquake.html show it", folder))
 end
 
 -- A test that says require "examples.masonry_earthquake" wants the functions only.
 if ... ~= "examples.masonry_earthquake" then
-    wall.main(arg and arg[1] or "out/masonry_earthquake")
+    wall.main(arg and arg[1] or "out/masonry_earthquake", tonumber(arg and arg[2] or 2))
 end
 return wall

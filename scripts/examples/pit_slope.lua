@@ -102,6 +102,7 @@ function pit.main(folder, number, workers)
     talus.plot { file = folder .. "/safety.svg", series = { { name = "realisations", x = x, y = y } },
         x_axis = { name = "least factor of safety of a keyblock", range = { 0, 3 } },
         y_axis = { name = "share below", unit = "%" } }
+    print(("%s/poles.svg and safety.svg show it"):format(folder))
     return set
 end
 

@@ -482,6 +482,31 @@ function talus.help(topic) end
 ---@field input_y? string Incoming wave along y, likewise.
 ---@field input_z? string Incoming wave along z, likewise.
 
+--- Vertical sides of rigid blocks that move as the ground far away: model:boundary.
+---@class (exact) talus.element.FreeField
+---@field faces string Numbers: block, face (from 0), area (m2), width (m), density (kg/m3) and held components (1 x, 2 y, 4 z, 8 rotation), of one face after the other.
+---@field kn? number Pa/m, in (0, 1e+50]: Normal stiffness of the joints of the column.
+---@field ks? number Pa/m, in (0, 1e+50]: Shear stiffness likewise.
+---@field p_velocity? number m/s, in (0, 1e+50]: In the place of kn: of pressure waves in the column.
+---@field s_velocity? number m/s, in (0, 1e+50]: In the place of ks: of shear waves.
+---@field base_kn? number Pa/m, in (0, 1e+50]: Of a quiet base: as kn, of what was cut off below. Without it the lowest level is held.
+---@field base_ks? number Pa/m, in (0, 1e+50]: Likewise, as ks.
+---@field base_p_velocity? number m/s, in (0, 1e+50]: Likewise, as p_velocity.
+---@field base_s_velocity? number m/s, in (0, 1e+50]: Likewise, as s_velocity.
+---@field base_density? number kg/m3, in (0, 1e+50]: Likewise, density; that of the lowest level when left out.
+---@field input_x? string Wave along x that comes in through a quiet base, numbers as of the kind quiet.
+---@field input_y? string Likewise along y.
+---@field input_z? string Likewise along z.
+---@field alpha? number 1/s, in [0, 1e+50], default 0: Damping of the levels by their mass.
+---@field beta? number s, in [0, 1e+50], default 0: Damping of the levels by their stiffness.
+
+--- Waves that come in through quiet faces of deformable blocks: model:boundary.
+---@class (exact) talus.element.Incoming
+---@field nodes string Numbers: block, face (from 0), place (m), outward normal, area (m2) and impedances of pressure and shear waves (Pa s/m), of one gridpoint after the other.
+---@field input_x? string Incoming wave along x, numbers as of the kind quiet.
+---@field input_y? string Likewise along y.
+---@field input_z? string Likewise along z.
+
 --- A spring and a dashpot between two points, of blocks or of the ground.
 ---@class (exact) talus.element.Spring
 ---@field from talus.Vector m: One end: on the block that it lies in, or on the ground.
@@ -503,6 +528,23 @@ function talus.help(topic) end
 ---@field pressure? number Pa, in [0, 1e+50]: Uniform pressure.
 ---@field drain_gap? number m, in (0, 1e+50], default 0.05: Mean opening beyond which a joint is dry.
 ---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
+
+--- Water that flows in joints: model:water("flow").
+---@class (exact) talus.element.Flow
+---@field aperture number m, in (0, 1]: Hydraulic aperture of walls that just touch.
+---@field residual? number m, in (0, 1], default 2e-05: Least aperture, of a joint that is pressed.
+---@field maximum? number m, in (0, 1], default 0.002: Largest aperture that counts.
+---@field viscosity? number Pa s, in (0, 1e+50], default 0.001: Of the water.
+---@field unit_weight? number N/m3, in (0, 1e+50], default 9810: Of the water.
+---@field bulk? number Pa, in (0, 1e+50], default 2000000000: Bulk modulus of the water, where flow is not steady.
+---@field initial_head? number m: Head at the beginning where flow is not steady; without it the pressure begins at 0.
+---@field drain_gap? number m, in (0, 1e+50], default 0.05: Mean opening beyond which a joint is dry.
+---@field apertures? string Other apertures, of joints, sets or planes: "A=1e-4,B:2=3e-4", m; the last that fits counts.
+---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
+---@field heads? talus.Vector[] m: Three points a head: least and largest corner of a box, and {head, 0, 0}.
+---@field drains? talus.Vector[] m: Three points a drain: both ends, and {radius, 0, 0}.
+---@field every? integer in [1, 1e+09], default 100: Steps between two solutions of steady flow.
+---@field steady? boolean default true: Whether water is in balance, or also stored, with every = 1.
 
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
@@ -532,6 +574,7 @@ local Model = {}
 ---@field force talus.Vector N: unbalanced force on its body
 ---@field moment talus.Vector N m: unbalanced moment about its body's centroid
 ---@field fixed boolean whether its body, or all its gridpoints, are held in every component
+---@field held integer components of its body that are held: 1 x, 2 y, 4 z, 8 rotation, added up
 ---@field hidden boolean hidden blocks are not cut
 ---@field body integer id of its rigid body: the lowest id of its blocks
 ---@field speed number m/s: length of the velocity
@@ -1338,10 +1381,11 @@ function talus.solid_test(options) end
 ---@field roller? boolean default false: holds the bodies across their faces; those of rigid blocks must look along x, y or z
 ---@field rotation? boolean default false: with roller: holds the rotation of rigid blocks, too
 ---@field quiet? boolean default false: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), of rigid blocks behind springs, and bears what it bore
----@field joint? string of quiet rigid blocks: the joint whose law has the stiffness kn and ks of what was cut off; "*" when left out
+---@field free_field? boolean default false: a vertical side of rigid blocks in level rows moves as the ground far away: as a column of such levels, whose base is that of the call or is held
+---@field joint? string of quiet rigid blocks and free fields: the joint whose law has the stiffness kn and ks of what was cut off; "*" when left out
 ---@field p_velocity? number m/s, in (0, 1e+50]: in the place of joint: velocity of pressure waves in what was cut off
 ---@field s_velocity? number m/s, in (0, 1e+50]: likewise of shear waves
----@field density? number kg/m3, in (0, 1e+50]: of what was cut off at quiet rigid blocks; that of the blocks when left out
+---@field density? number kg/m3, in (0, 1e+50]: of what was cut off at quiet rigid blocks and free fields; that of the blocks when left out
 ---@field pressure? number Pa: pressure on the faces, inward
 ---@field water_level? number m: height z of still water before the faces: it presses on what lies below
 ---@field unit_weight? number N/m3, in (0, 1e+50], default 9810: of this water
@@ -1353,9 +1397,9 @@ function talus.solid_test(options) end
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
 ---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
----@field input? talus.Vector of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)
----@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
----@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
+---@field input? talus.Vector of quiet faces: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)
+---@field xmin? "roller"|"fixed"|"free_field"|talus.BoundaryOptions several sides in one call
+---@field xmax? "roller"|"fixed"|"free_field"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
 ---@field ymax? "roller"|"fixed"|talus.BoundaryOptions likewise
 ---@field zmin? "roller"|"fixed"|talus.BoundaryOptions likewise
@@ -1375,7 +1419,7 @@ function talus.solid_test(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added. Quiet faces of rigid blocks are elements of the kind quiet: model:elements{kind = "quiet"}. A body that was held is let go, and bears on as a load what held it: across the face, or in all components if it was held in all.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added. Quiet faces of rigid blocks are elements of the kind quiet: model:elements{kind = "quiet"}; those of a free field are of the kind free_field. A body that was held is let go, and bears on as a load what held it: across the face, or in all components if it was held in all.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
@@ -1985,18 +2029,34 @@ function Model:elements(options) end
 ---@field factor? number of the pressure under a table, as drains leave it; 1 when left out
 ---@field pressure? number|fun(x: number, y: number, z: number): number uniform pressure, Pa; or of a field, asked once for each node and then kept
 ---@field joints? string|string[] joints that have this water, "A", "A:3" or "*"; all when left out
+---@field aperture? number of "flow", m: hydraulic aperture of walls that just touch, of all joints, by joint with "*" for the others, or asked once for each wet joint, at its middle; it grows as the joint opens and falls as it closes
+---@field residual? number likewise: least aperture; 2e-5 when left out
+---@field maximum? number likewise: largest aperture that counts; 2e-3 when left out
+---@field viscosity? number likewise, Pa s; 1e-3 when left out
+---@field heads? { inside: { min: talus.Vector, max: talus.Vector }, min: talus.Vector, max: talus.Vector, head: number }[] likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box
+---@field drains? any likewise: holes of a radius, m, in which the pressure is 0
+---@field steady? any likewise: true, when left out: water is in balance; false: joints store water
+---@field every? number likewise: steps between two solutions of steady flow; 100 when left out
+---@field bulk? number likewise: bulk modulus of water that is stored, Pa; 2e9 when left out
+---@field initial_head? number likewise: head at the beginning where flow is not steady; without it pressure is 0, m
 ---@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out
 
---- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
+--- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. Of "flow" pressures are found by the cubic law, between heads and drains, with apertures that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
 ---
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")  or  model:water("flow", {aperture = 2e-4, heads = {{inside = BOX, head = 20}}})
 ---@param name string
 ---@param options? talus.WaterOptions
 ---@return talus.Elements
 ---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 ---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 ---@overload fun(self: talus.Model, name: string): talus.Elements
+---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 function Model:water(name, options) end
+
+--- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain. element 'flow' Water that flows in joints: model:water("flow").
+---
+---     result = model:flow()
+function Model:flow() end
 
 ---@class (exact) talus.FactorOfSafetyOptions
 ---@field from? number >= 0.05, default 0.1: least factor that is tried

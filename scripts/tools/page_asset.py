@@ -21,6 +21,7 @@ VIEWER = ROOT / "viewer"
 ASSET = ROOT / "core/io/page_asset.c"
 SCRIPT = ("main.js", "--bundle", "--format=esm", "--target=es2022")
 STYLE = ("style.css",)
+SHADERS = VIEWER / "shaders.js"
 # What the program replaces in the page of a run that it serves: a string of its own.
 NO_CONNECTION = "connect-src 'none'"
 # Bytes of a string in C that every compiler takes, with room for what is escaped.
@@ -35,9 +36,18 @@ def esbuild(*arguments):
     return done.stdout
 
 
+def squeezed(line):
+    """A line of a shader without the spaces and comments that it does not need."""
+    line = line.partition("//")[0].strip()
+    return line if line.startswith("#") else re.sub(r" ?([=*/,;:?<>(){}|&!]+) ?", r"\1", line)
+
+
 def short(arguments):
-    """A script or style as the page has it."""
+    """A script or style as the page has it. esbuild makes script and style short, but leaves texts as they are: shaders are made short here."""
     text = esbuild(*arguments, "--minify", "--charset=utf8").strip()
+    shaders = {line.strip() for line in SHADERS.read_text(encoding="utf-8").splitlines() if "`" not in line}
+    text = "\n".join(squeezed(line) if line.strip() in shaders else line for line in text.split("\n"))
+    text = re.sub(r"\n\n+", "\n", text)
     for mark in ("</script", "</style", "<!--"):
         if mark in text.lower():
             sys.exit(f"page_asset.py: {arguments[0]} would have {mark} in it, which ends an element of the page")

@@ -20,6 +20,9 @@ local function fail(format, ...)
 end
 
 function check.equal(actual, expected)
+    if type(actual) == "function" or type(expected) == "function" then
+        fail("a function is compared, not what it gives: a method without its call")
+    end
     if actual ~= expected then
         fail("%s is not %s", tostring(actual), tostring(expected))
     end

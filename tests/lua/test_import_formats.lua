@@ -127,6 +127,50 @@ for seed = 1, check.cases(MODELS) do
     end
 end
 
+-- ---------------------------------------------------------------- faces divided on one side of an edge only
+
+-- Divides some faces of an object between two of their edges, time and again. Neighbours know nothing of the new corners.
+local function divided(object, times)
+    for _ = 1, times do
+        local f = math.random(#object.faces)
+        local face, new = object.faces[f], { {}, {} }
+        local i = math.random(#face - 1)
+        local j = math.random(i + 1, #face)
+        local at = {}
+        for k, edge in ipairs { i, j } do
+            local p, q, share = object.vertices[face[edge]], object.vertices[face[edge % #face + 1]], 0.2 + 0.6 * math.random()
+            object.vertices[#object.vertices + 1] = { p[1] + share * (q[1] - p[1]), p[2] + share * (q[2] - p[2]), p[3] + share * (q[3] - p[3]) }
+            at[k] = #object.vertices
+        end
+        new[1] = { at[1] }
+        table.move(face, i + 1, j, 2, new[1])
+        table.insert(new[1], at[2])
+        new[2] = { at[2] }
+        table.move(face, j + 1, #face, 2, new[2])
+        table.move(face, 1, i, #new[2] + 1, new[2])
+        table.insert(new[2], at[1])
+        object.faces[f], object.faces[#object.faces + 1] = new[1], new[2]
+    end
+    return object
+end
+
+for seed = 1, check.cases(MODELS) do
+    local model, corners = random_model(seed), 0
+    for ending, writer in pairs { [".obj"] = writers[".obj"], [".stl"] = writers[".stl"] } do
+        local objects = objects_of(model)
+        for _, object in ipairs(objects) do
+            divided(object, seed % 7)
+        end
+        local other = talus.model {}
+        local summary = other:generate("import", { file = write(ending, writer(objects, digits("%.12f"))), density = 2000 })
+        same(model, other, 1e-9)
+        for _, row in ipairs(summary.report) do
+            corners = corners + (row.between or 0)
+        end
+    end
+    check.equal(corners > 0, seed % 7 > 0)
+end
+
 -- ---------------------------------------------------------------- a vault
 
 -- A barrel vault of 20 courses with 35 stones, every other one offset by half a stone, rounded to `unit`.
@@ -217,11 +261,45 @@ check.equal(#named:blocks { group = "right" }, 1)
 named:generate("import", { file = stem .. ".obj", density = 1, group = "mine", translate = { 0, 5, 0 } })
 check.equal(#named:blocks { group = "mine" }, 2)
 
+-- Names that agree in all of the letters that are kept stay apart.
+lines = { "o " .. ("n"):rep(70) .. "A" }
+cube(0, 0, lines)
+lines[#lines + 1] = "o " .. ("n"):rep(70) .. "B"
+cube(8, 1.5, lines)
+local long = talus.model {}
+local told = long:generate("import", { file = write(".obj", table.concat(lines, "\n")), density = 1 })
+check.equal(told.report.long_names, 4)
+local first, second = long:blocks()[1].group, long:blocks()[2].group
+check.holds(first ~= second and #first == 63 and first:sub(1, 50) == ("n"):rep(50), first .. ", " .. second)
+
 local turned = talus.model {}
 turned:generate("import", { density = 1, file = write("_moved.json", [==[
 {"data": {"transformation": {"dtype": "t", "data": {"matrix": [[0, -1, 0, 10], [1, 0, 0, 20], [0, 0, 1, 30], [0, 0, 0, 1]]}},
  "geometry": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]}}}]==]) })
 check.near(turned:blocks()[1].centroid, { 9.75, 20.25, 30.25 }, 1e-12)
+
+-- ---------------------------------------------------------------- solids that touch along a sharp edge
+
+-- Two wedges of 25 degrees whose sharp edges are one, as triangles without numbers. Faces far off their plane may not take
+-- the angle of such a wedge for none.
+local sharp, tan = {}, math.tan(math.rad(25))
+for side = -1, 1, 2 do
+    local at = { { 0, 0, 0 }, { 0, 1, 0 }, { side, 0, 0 }, { side, 1, 0 }, { side, 0, tan }, { side, 1, tan } }
+    for _, f in ipairs { { 1, 5, 6 }, { 1, 6, 2 }, { 1, 2, 4 }, { 1, 4, 3 }, { 3, 4, 6 }, { 3, 6, 5 }, { 1, 3, 5 }, { 2, 6, 4 } } do
+        sharp[#sharp + 1] = "facet normal 0 0 0\nouter loop"
+        for k = 1, 3 do
+            sharp[#sharp + 1] = ("vertex %.9f %.9f %.9f"):format(table.unpack(at[f[side < 0 and (5 - k) % 3 + 1 or k]]))
+        end
+        sharp[#sharp + 1] = "endloop\nendfacet"
+    end
+end
+write(".stl", "solid a\n" .. table.concat(sharp, "\n") .. "\nendsolid a\n")
+for _, flat in ipairs { 1e-3, 0.3 } do
+    local wedges = talus.model {}
+    wedges:generate("import", { file = stem .. ".stl", density = 1, weld = 1e-6, flat = flat })
+    check.equal(#wedges:blocks(), 2)
+    check.near(wedges:blocks():sum "volume", tan, 1e-8)
+end
 
 -- ---------------------------------------------------------------- what write_blocks writes
 

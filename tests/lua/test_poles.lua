@@ -115,7 +115,7 @@ do
         { "dip,dip_direction\n30,\n", "line 2, column 'dip_direction': '' is no number" },
         { "dip,azimuth\n30,100\n", "line 1 does not name a column 'dip_direction'" },
         { "dip,dip_direction,dip\n30,100,3\n", "line 1 names a column twice" },
-        { "dip,dip_direction,weight\n30,100,0\n", "line 2, column 'weight': 0 must be > 0" },
+        { "dip,dip_direction,weight\n30,100,0\n", "line 2, column 'weight': 0 is outside [1e-09, 1e+09]" },
         { "dip,dip_direction\n30,nan\n", "'nan' is no number" },
         { "", "it is empty" },
         { "dip,dip_direction\n", "it has no row after the line of names" },

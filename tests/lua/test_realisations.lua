@@ -238,6 +238,27 @@ do
     good, said = merge()
     check.holds(good and said:find "150 rows of 4 files")
     check.equal(read(path), read(whole))
+    -- errors are counted among all rows: one that one process bears ends no shard, however few rows that has
+    local script_of_one = folder .. "/one_error.lua"
+    local text = assert(io.open(script_of_one, "wb"))
+    text:write([[
+local talus = require "talus"
+local model = talus.model {}
+talus.realisations { number = 60, file = arg[1], build = function(draw)
+    return draw.row == 7 and error("seven", 0) or model
+end, measure = function(_, draw) return { x = draw.uniform("u", 0, 1) } end }]])
+    text:close()
+    local bears = folder .. "/one_error.csv"
+    os.remove(bears)
+    check.holds(shell("'%s' --quiet '%s' '%s'", program, script_of_one, bears))
+    local by_one = read(bears)
+    for i = 1, 10 do
+        os.remove(("%s.shard-%d-of-10"):format(bears, i))
+        check.holds(shell("'%s' run --quiet --shard %d/10 '%s' '%s'", program, i, script_of_one, bears))
+    end
+    os.remove(bears)
+    check.holds(shell("'%s' merge '%s' 2>'%s/said'", program, bears, folder))
+    check.equal(read(bears), by_one)
     -- another seed is refused
     local other = assert(io.open(path .. ".shard-2-of-2", "rb")):read "a"
     local changed = assert(io.open(path .. ".shard-2-of-2", "wb"))

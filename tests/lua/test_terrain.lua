@@ -135,6 +135,9 @@ do
     check.equal(turned_count, count)
     local small = below(rock(), { file = grid("mm.asc", 5, 10, shapes.cone, { scale = 0.001 }), scale = 0.001 })
     check.near(small, volume, 1e-9)
+    local plain = assert(io.open(grid("plain.asc", 5, 10, shapes.cone), "rb")):read "a"
+    local marked = write("mark.asc", "\xef\xbb\xbf" .. plain) -- as some editors begin a text
+    check.equal(below(rock(), { file = marked }), below(rock(), { file = grid("order.asc", 5, 10, shapes.cone) }))
     local far = below(rock { x = 5000 }, { file = grid("far.asc", 5, 10, shapes.cone, { x = 5000 }) })
     check.near(far, volume, 1e-6)
     local moved = below(rock { x = 5000 }, { file = file, translate = { 5000, 5000, 0 } })

@@ -4,9 +4,11 @@
     TALUS_PROGRAM=BUILD/talus tests/python/test_view.py [NAME...]
 
 Without the plugin that serves pages one sentence, and status 77."""
+import math
 import os
 import re
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -136,13 +138,60 @@ def test_refused(folder):
         text = answer.read().decode()
         connection.close()
         check(answer.status == 400 and words in text, f"{body}: {answer.status} {text}")
-    check(program.command(op="factor_of_safety")[0] == 202, "factor_of_safety is not taken")
-    check(watcher.until(lambda w: w.lines), f"no factor is told: {watcher.refused}")
-    check(re.fullmatch(r"print\(model:factor_of_safety {}\.message\) --> [^\n]*(factor of safety \d|it holds at|it fails at|no strength)[^\n]*", watcher.lines[-1]),
-          f"the factor is told as {watcher.lines}")
     program.command(op="go")
     out, status = program.end()
     check(status == 0 and out == run(script.replace("model:view { wait = true }", "")).stdout, f"{status} {out}")
+
+
+SLIDE = """
+local talus = require "talus"
+local function build()
+    local model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { -2, -1, -1 }, max = { 2, 1, 1 }, density = 2000 })
+    model:generate("joint", { joint = "A", dip = 30, dip_direction = 90, origin = { 0, 0, 0 } })
+    model:blocks { below = { dip = 30, dip_direction = 90, origin = { 0, 0, -0.1 } } }:fix()
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+    model:damping("local")
+    return model
+end
+"""
+
+
+def test_safety(folder):
+    """A factor of safety is found between steps, on copies: the line tells it with the blocks that fail, and the state is what it was. A model that moves is refused."""
+    log = folder / "safety.lua"
+    script = SLIDE + f"""
+        local model = build()
+        model:view {{ wait = true, log = "{log}" }}
+        model:cycle(4000)
+        print(model.cycles, model:state_hash())"""
+    program = Program(PROGRAM, script)
+    watcher = program.look()
+    watcher.until(lambda w: w.state == "waiting")
+    program.command(op="factor_of_safety")
+    check(watcher.until(lambda w: w.lines or w.refused) and not watcher.refused, f"refused: {watcher.refused}")
+    program.command(op="step", n=3)
+    watcher.until(lambda w: w.state == "waiting" and w.cycle == 3)
+    program.command(op="factor_of_safety")
+    check(watcher.until(lambda w: w.refused or len(w.lines) > 2) and "moves" in "".join(watcher.refused), f"while it moves: {watcher.refused} {watcher.lines}")
+    program.command(op="step", n=1500)
+    watcher.until(lambda w: w.state == "waiting" and w.cycle == 1503)
+    program.command(op="factor_of_safety")
+    done = lambda w: sum(line.startswith("model:factor_of_safety {} -- ") for line in w.lines)  # noqa: E731
+    check(watcher.until(lambda w: done(w) == 2 or len(w.refused) > 1) and done(watcher) == 2, f"at rest: {watcher.refused} {watcher.lines}")
+    free = [i for i in watcher.ids if i not in watcher.held]
+    exact = math.tan(math.radians(40)) / math.tan(math.radians(30))
+    for line in watcher.lines:
+        found = re.fullmatch(r"model:factor_of_safety {} -- factor of safety ([\d.]+) .*; blocks ([\d, ]+)", line)
+        check(found is not None or line.startswith("model:cycle"), f"the line {line}")
+        if found:
+            check(abs(float(found[1]) / exact - 1) < 0.011 and [int(i) for i in found[2].split(", ")] == free, f"{line}, and not {exact:.3f} of blocks {free}")
+    program.command(op="go")
+    out, status = program.end()
+    plain = run(SLIDE + "local model = build() model:cycle(1503) model:cycle(4000) print(model.cycles, model:state_hash())")
+    check(status == 0 and out == plain.stdout, f"looked at for safety {out}, else {plain.stdout}")
+    again = repeated(SLIDE, log)
+    check(again == out.strip(), f"the log gives {again}, the run gave {out.strip()}: {log.read_text()}")
 
 
 def test_waiting(folder):

@@ -41,7 +41,7 @@ TEST(each_command_takes_what_it_needs)
                     "\"origin\":[1.5,-2e-3,1e300]}"));
     CHECK(command.dip == 60 && command.dip_direction == 90.25);
     CHECK(command.origin.x == 1.5 && command.origin.y == -2e-3 && command.origin.z == 1e300);
-    for (int op = 0; op <= TL_VIEW_SNAPSHOT; op++) {
+    for (int op = 0; op <= TL_VIEW_SAFETY; op++) {
         char text[64];
         snprintf(text, sizeof text, "{\"op\":\"%s\"}", tl_view_op_name((tl_view_op)op));
         CHECK(read_text(text) ? command.op == (tl_view_op)op : strstr(why, "needs") != NULL);

@@ -68,15 +68,28 @@ for _, name in ipairs { "stiff", "soft" } do
         local force, out = mouth(drive(at, bolt, { { -1e-4, 0, 0 } }, 1))
         figures.relative("stiffness of " .. n .. " elements", force / out, stiffness, 1e-6)
     end
-    local bolt, at = pull(case, 0.005)
-    local e = drive(at, bolt, { { -1e-4, 0, 0 } }, 1)
-    local force, out, first = mouth(e)
-    figures.relative("stiffness", force / out, expected.stiffness, 2e-4) -- (beta h)^2 / 8 is 1.6e-4
+    -- Nodes at distances h make a bar stiffer by (beta h)^2 / 8. Half of h leaves a quarter of that: two bars and a line
+    -- through them to h = 0 give the closed form.
+    local function shares(spacing)
+        local bolt, at = pull(case, spacing)
+        local e = drive(at, bolt, { { -1e-4, 0, 0 } }, 1)
+        local force, out, first = mouth(e)
+        local list = {}
+        for x in pairs(expected.axial_force_at) do
+            local i = first + math.floor(x / spacing + 0.5)
+            list[x] = x > 0 and 0.5 * (e.nodes[i - 1].tension + e.nodes[i].tension) / force
+        end
+        return force / out, list
+    end
+    local coarse, fine = 0.01, 0.005 -- m
+    local K1, share1 = shares(coarse)
+    local K2, share2 = shares(fine)
+    figures.relative("stiffness", K2 / (1 + (expected.beta * fine) ^ 2 / 8), expected.stiffness, 1e-6)
+    figures.relative("stiffness, without distance", (4 * K2 - K1) / 3, expected.stiffness, 1e-6)
     for x, axial in pairs(expected.axial_force_at) do
-        if x > 0 and x < 1.5 then
-            local i = first + math.floor(x / 0.005 + 0.5)
-            local mean = 0.5 * (e.nodes[i - 1].tension + e.nodes[i].tension)
-            figures.relative("axial force at " .. x .. " m", mean / force * c.force, axial, 1e-3)
+        if x > 0 then
+            local share = (4 * share2[x] - share1[x]) / 3
+            figures.relative("axial force at " .. x .. " m", share * c.force, axial, 1e-5)
         end
     end
 end
@@ -240,20 +253,45 @@ local function prism(bolt, friction)
     for k = 1, 3 do
         bolt.to[k] = bolt.from[k] + 10 * along[k] / force
     end
-    bolt.grouted_from, bolt.grout_stiffness, bolt.grout_strength, bolt.plate_strength = 0.8, 1e10, 1e9, 1e9
+    bolt.grouted_from = bolt.grouted_from or 0.8
+    bolt.grout_stiffness, bolt.grout_strength, bolt.plate_strength = 1e10, 1e9, 1e9
     model:element("bolt", bolt)
     return model
 end
 
-figures.case("FS.bolt_active", "A prism on a plane with water and a bolt of constant force: a pretensioned anchor that is soft.",
-    "Hoek and Bray 1977, chapter 7")
-model = prism({ pretension = force, young = 1e8, yield = 1e9, active_length = 100 }, active.friction)
-figures.relative("keyblocks", model:keyblocks { friction = active.friction }[1].safety, active.FS, 1e-3)
+-- Load of the anchors: a soft one keeps its pretension; a stiff one yields at it.
+figures.case("FS.bolt_active", "A prism on a plane with water and a bolt of constant force: a pretensioned anchor that is soft, "
+    .. "and stiff ones that yield, one of which nothing has pulled before.", "Hoek and Bray 1977, chapter 7")
+local FINE = 0.002 -- width of a bracket, relative
+local anchors = {
+    soft = { pretension = force, young = 1e8, yield = 1e9, active_length = 100, rupture_strain = 100 },
+    ["yields"] = { pretension = 0.999 * force, yield = force, active_length = 100, rupture_strain = 10 },
+    ["yields, not pretensioned"] = { yield = force, active_length = 100, rupture_strain = 10 },
+}
+for _, name in ipairs { "soft", "yields", "yields, not pretensioned" } do
+    model = prism(anchors[name], active.friction)
+    if name == "soft" then
+        figures.relative("keyblocks", model:keyblocks { friction = active.friction }[1].safety, active.FS, 1e-3)
+    end
+    local r = model:factor_of_safety { resolution = FINE }
+    figures.relative(name, r.factor, active.FS, 0.005)
+    figures.equal(name .. ": undecided", r.undecided, 0)
+end
 
+-- Strengths of plane and bolt over the factor, in equilibrium: both parts of the bolt's force are divided. In the formula the
+-- part that presses the plane together is not.
 figures.case("FS.bolt_passive", "The same with a bolt whose strength is divided by the factor, as that of the plane is: at 1 % "
     .. "below the factor it holds, at 1 % above it the prism slides.", "Hoek and Bray 1977, chapter 7")
+local PASSIVE, EQUILIBRIUM = 1.0416075216, 1.0377728824
+for _, grouted in ipairs { 0.8, 0 } do
+    local r = prism({ yield = force / EQUILIBRIUM, grouted_from = grouted, active_length = 100, rupture_strain = 10 },
+        active.friction):factor_of_safety { resolution = FINE }
+    local name = ("grouted from %g: "):format(grouted)
+    figures.relative(name .. "equilibrium", r.factor, EQUILIBRIUM, 0.002)
+    figures.relative(name .. "formula", r.factor, PASSIVE, 0.005)
+end
 for _, share in ipairs { 0.99, 1.01 } do
-    local F = 1.0416075216 * share
+    local F = PASSIVE * share
     local friction = math.deg(math.atan(math.tan(math.rad(active.friction)) / F))
     local one = prism({ yield = force / F, active_length = 100, rupture_strain = 10 }, friction)
     one:damping "local"

@@ -368,4 +368,13 @@ reference["DF.punch"] = {
     },
 }
 
+-- Dams of zones, before still water up to `level`; the face leans back by `batter`. `moment`: how far off the moment of the
+-- base may be, as the water follows a dam that strains by 1e-6.
+reference.reservoir = {
+    source = "hydrostatics", young = 1e12, poisson = 0.2, density = 2400, g = 9.81, unit_weight = 9810, height = 10, breadth = 8,
+    width = 2, zone = 2, moment = 1e-5,
+    { name = "DF.reservoir.upright", level = 7.3, batter = 0 }, { name = "DF.reservoir.full", level = 10, batter = 0 },
+    { name = "DF.reservoir.battered", level = 7.3, batter = 0.2 },
+}
+
 return reference

@@ -60,6 +60,17 @@ reference.site = {
     density = 2500, ks = 1e9, f1 = 5.45249023021, f2 = 16.3254733099,
 }
 
+-- Surface over outcrop of an undamped layer of soil of 40 m on rock: 1 / |cos(k H) + i a sin(k H)|, a the ratio of impedances
+-- of soil and rock.
+reference.amplification = {
+    source = "J. M. Roesset, in: Numerical Methods in Geotechnical Engineering (1977); S. L. Kramer, Geotechnical "
+        .. "Earthquake Engineering (1996)",
+    blocks = 20, height = 2, density = 2500, speed = 894.427191, impedance_ratio = 0.25,
+    { frequency = 1, ratio = 1.03812121412 }, { frequency = 2, ratio = 1.16737754614 },
+    { frequency = 5.5901699437494745, ratio = 4 }, { frequency = 6, ratio = 3.65445897594 },
+    { frequency = 16.77050983124842, ratio = 4 },
+}
+
 -- A block of b along a plane of dip `dip` and h across it, pushed by kh times its weight out of the slope. The water behind
 -- it, to a height `water`, and below it push with V and U.
 reference.kh = {
@@ -84,6 +95,22 @@ reference.quiet = {
 reference.input = {
     source = "W. B. Joyner and A. T. F. Chen, Bull. Seism. Soc. Am. 65 (1975)", blocks = 20, height = 2, density = 2500,
     ks = 1e9, size = 0.1, T = 0.4, peak = 0.2, arrival = 0.04472135955,
+}
+
+-- Ground that is the same everywhere and goes on for ever cannot tell its columns apart: 10 x 1 x 10 blocks, the wave
+-- size sin^2(pi t / T) coming in. Quiet sides in the place of free fields lose at least that part of the peak.
+reference.free_field = {
+    source = "symmetry; P. A. Cundall, H. Hansteen, S. Lacasse and P. B. Selnes, NESSI, Norwegian Geotechnical Institute, "
+        .. "report 51508-9 (1980)",
+    blocks = 10, height = 2, density = 2500, kn = 2.5e9, ks = 1e9, size = 1e-3, T = 0.1, difference = 1e-6,
+    quiet_sides_lose = 0.2,
+}
+
+-- A bar of zones, and pulses of so many metres: quiet faces leave at most that part of the energy.
+reference.quiet_zones = {
+    source = "J. Lysmer and R. L. Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969); W. B. Joyner and A. T. F. Chen, "
+        .. "Bull. Seism. Soc. Am. 65 (1975)",
+    E = 1e10, nu = 0.25, rho = 2500, zone = 1, length = 40, pulse = 24, size = 1e-3, left = 1e-3,
 }
 
 return reference

@@ -156,6 +156,33 @@ for _, one in ipairs(reference.wedges) do
     end
 end
 
+-- The load of HB_bolt by anchors: they are soft, so their pull stays what it was, and go through the wedge into held rock.
+figures.case("FS.wedge.anchors", "The wedge whose load is that of anchors, with six anchors in the place of the load.",
+    "Hoek and Bray 1977")
+for _, one in ipairs(reference.wedges) do
+    if one.id == "FS.wedge.HB_bolt" then
+        local pull = math.sqrt(dot(one.load, one.load))
+        local along = { one.load[1] / pull, one.load[2] / pull, one.load[3] / pull }
+        local model, block = build_wedge(setmetatable({ load = { 0, 0, 0 } }, { __index = one }))
+        block:fix { rotation = true }
+        local list, side = {}, cross(along, { 0, 0, 1 })
+        for k = 0, 5 do
+            local from, to = {}, {}
+            for i = 1, 3 do
+                local at = block[1].centroid[i] + (k % 3 - 1) * 2 * side[i] + (i == 3 and 2 * (k // 3) or 0)
+                from[i], to[i] = at - 60 * along[i], at + 60 * along[i]
+            end
+            list[#list + 1] = { from = from, to = to, pretension = pull / 6, diameter = 0.1, young = 1e9, yield = 1e10,
+                grouted_from = 0.9, grout_strength = 1e9, plate_strength = 1e10, plate_stiffness = 1e9, rupture_strain = 10,
+                active_length = 100, spacing = 0.5 }
+        end
+        model:element("bolt", list)
+        local r = model:factor_of_safety { resolution = FINE }
+        figures.relative("factor", r.factor, one.FS, 0.005)
+        figures.equal("undecided", r.undecided, 0)
+    end
+end
+
 -- ------------------------------------------------------------ two blocks
 
 -- The lower corner of the upper block would run into the other's plane, of which limit equilibrium knows nothing: m of it

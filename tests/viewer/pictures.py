@@ -38,6 +38,8 @@ PICTURES = {
     "yielding_tunnel_stress": ("yielding_tunnel", "#zones=largest%20principal%20stress&crosses=1&mesh=0&camera=0,0,26,-9,1,-1.2"),
     "deformable_tunnel": ("deformable_tunnel", "#zones=largest%20principal%20stress&crosses=1&cut=1&dip=90&direction=180&position=-0.14&parallel=1&camera=0,0,12.3,-5.8,0,1.3"),
     "large_slope": ("large_slope", "#camera=60,18,78,40,35,27"),
+    "bolted_roof": ("bolted_roof", "#colour=field%3Asafety&cut=1&dip=90&direction=180&position=0.15&camera=8,-24,11,-1.8,0,3.2"),
+    "dam": ("dam", "#elements=pressure&camera=40,22,80,14,0,18"),
     "slope_section": ("slope", "#cut=1&dip=90&direction=180&position=-3&parallel=1&arrows=displacement&camera=0,0,36.7,14.1,20,16.3"),
 }
 SLOW = {"large_slope": "scripts/tools/large_slope.lua"}

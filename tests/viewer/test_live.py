@@ -169,6 +169,19 @@ def test_log(chrome, page):
         check(chrome.log == [], f"the page reports {chrome.log}")
 
 
+def test_safety(chrome, page):
+    """What a factor of safety names is picked: one block, or all of them."""
+    frames = list(frames_of(page))
+    with MockRun(page) as run:
+        run.put(frames[0], live("waiting"))
+        watch(chrome, run)
+        for number, ids in enumerate(([90], [92, 88, 90]), 1):
+            line = f"model:factor_of_safety {{}} -- factor of safety 1.13 (holds at 1.12, fails at 1.14): {len(ids)} blocks of 3 m3 slide; blocks {', '.join(map(str, ids))}"
+            run.put(frames[number], live("waiting", line=line))
+            check(until(chrome, f"talus.app.picks().join() === '{','.join(map(str, ids))}'"), f"{chrome.run('talus.app.picks()')} are picked, and not {ids}")
+            check(words(chrome) == line, f"the page says: {words(chrome)}")
+
+
 def test_commands(chrome, page):
     """Every button sends its command; what is refused is told; long lists go in parts."""
     frames = list(frames_of(page))
@@ -193,6 +206,7 @@ def test_commands(chrome, page):
         sends("Save", {"op": "snapshot"})
         sends("VTK", {"op": "write_vtk"})
         sends("Show all", {"op": "show"})
+        sends("Safety", {"op": "factor_of_safety"})
         chrome.run("talus.app.pick(92), talus.app.pickMore(88), talus.app.drawn()")
         table = dict(chrome.run("[...document.querySelectorAll('#picked tr')].map(r => [...r.cells].map(c => c.textContent))"))
         check(chrome.run("document.querySelector('#picked h2').textContent") == "2 blocks" and table["ids"] == "92, 88", f"of two blocks the table says {table}")

@@ -138,7 +138,7 @@ def test_controls(chrome, folder):
     chrome.run("(talus.app.view.zones = 'state', talus.app.view.crosses = true, talus.app.change('colour'), talus.app.drawn())")
     label = chrome.run("document.getElementById('legend').getAttribute('aria-label')")
     check("elastic" in label and "compression, tension" in label and "longest cross" in label, f"the legend says {label}")
-    check(chrome.run("talus.app.gpu.sheets.count") > 300, "there are no crosses")
+    check(chrome.run("talus.app.gpu.sheets.solid") > 300, "there are no crosses")
 
 
 def test_damage(chrome, folder):

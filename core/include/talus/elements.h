@@ -23,6 +23,10 @@ TL_API tl_status tl_model_element(tl_model *model, const char *kind, const tl_ar
 TL_API tl_status tl_model_element_places(tl_model *model, const char *kind, const tl_args *args, size_t count,
                                          tl_vec3 **places, size_t *nodes);
 
+/* Likewise the mean place of the nodes of each element, m. */
+TL_API tl_status tl_model_element_middles(tl_model *model, const char *kind, const tl_args *args, size_t count,
+                                          tl_vec3 **places, size_t *elements);
+
 /* Which elements; all that is set must hold. */
 typedef struct tl_element_filter {
     uint32_t size;     /* sizeof(tl_element_filter) */
@@ -77,6 +81,10 @@ TL_API tl_status tl_elements_values(tl_model *model, const tl_id *elements, size
 TL_API tl_status tl_elements_set(tl_model *model, const tl_id *elements, size_t count, const tl_args *args);
 /* Takes elements away. What they hold counts as work by hand. TL_E_STALE for one that is no more; then none goes. */
 TL_API tl_status tl_elements_delete(tl_model *model, const tl_id *elements, size_t count);
+
+/* Has all elements do at once what those of one call do together, as in the steps in which they are due: after their
+ * states have been written. What kinds refuse; then states that have been changed stay so. */
+TL_API tl_status tl_elements_renew(tl_model *model);
 
 typedef struct tl_element_energy {
     double stored, lost, given; /* J: held now; turned to heat and brought in from outside until now */

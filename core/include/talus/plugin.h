@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 14u
+#define TL_ABI_MINOR 15u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -74,7 +74,8 @@ typedef enum tl_param_type {
      * Since 1.13 also of elements: the host keeps the text as long as `self`. */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
     /* tl_points: a list of vectors; empty when optional and not given. Since 1.10 also of solids, with TL_PARAM_FLAT: a
-     * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. */
+     * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. Since 1.15 also of
+     * elements. */
     TL_PARAM_POINTS
 } tl_param_type;
 
@@ -167,7 +168,8 @@ typedef enum tl_state_transfer {
 typedef struct tl_state {
     uint32_t size;
     uint32_t kind;     /* tl_state_kind; a damping has scalars only */
-    uint32_t transfer; /* tl_state_transfer; TL_TRANSFER_COPY for dampings, solids and elements */
+    uint32_t transfer; /* tl_state_transfer; TL_TRANSFER_COPY for dampings, solids and elements. Since 1.15 an element
+                        * may have TL_TRANSFER_RESET: where `place` is called again the state is what that gives. */
     const char *name;
     const char *unit;
     const char *doc;
@@ -753,6 +755,14 @@ typedef struct tl_element_ops {
      * them itself, until a block has gone farther than 1e-6 of its size. It books their work meanwhile. `stored` and
      * `lost` must be 0. With nodes in zones all are asked in every step. */
     uint32_t steady;
+    /* [main] Since 1.15, may be NULL: what the elements of one call do together, such as water that flows from one to
+     * the other. It changes states, by which `update` then finds the forces. Of the batch, which holds all elements of
+     * the call, du, v, force, stored, lost and given are NULL. Called once they are placed, when they have been placed
+     * again, and before `update` in steps of which the number is divisible by `every`. Elements that have got other
+     * parameters by tl_elements_set are calls of their own. */
+    tl_status (*together)(const void *self, const tl_element_batch *batch, tl_report *report);
+    /* [main] Since 1.15, may be NULL: 1. Steps between two calls of `together`; 0: none in steps. */
+    uint32_t (*every)(const void *self);
 } tl_element_ops;
 
 /* ---------------------------------------------------------------- descriptors ------------ */

@@ -32,7 +32,7 @@ typedef struct tl_measured {
     {                                                                                                                  \
         {"dip", 0, 90, false, false, 0}, {"dip_direction", 0, 360, false, false, 0},                                   \
         {                                                                                                              \
-            "weight", 0, INFINITY, true, true, 1                                                                       \
+            "weight", 1e-9, 1e9, false, true, 1                                                                        \
         }                                                                                                              \
     }
 

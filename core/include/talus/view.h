@@ -42,7 +42,7 @@ typedef enum tl_view_op {
     TL_VIEW_FRICTION, /* `value`, degrees, of `joint` */
     TL_VIEW_VTK,      /* a frame for ParaView */
     TL_VIEW_SNAPSHOT, /* the model saved */
-    TL_VIEW_SAFETY    /* its factor of safety */
+    TL_VIEW_SAFETY    /* its factor of safety, found on copies */
 } tl_view_op;
 
 /* Longest name of a joint in a command, bytes with the 0; as many block ids as it can have. */

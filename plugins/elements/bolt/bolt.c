@@ -5,9 +5,8 @@
  *     E A w'' = t,    t = kg (w - r - s),    |t| <= bond strength,    N = E A (w' - plastic strain),    |N| <= yield
  *
  * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock. The steel between
- * two of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for.
- * Newton passes with a three-band matrix find w in each step. Grout that slips and steel that yields keep a small part
- * of their stiffness in the matrix only, so it is never singular. Source: St John & Van Dillen 1983.
+ * two of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for. chain.c
+ * finds w in each step. Source: St John & Van Dillen 1983.
  *
  * The plate is a spring at the first node that presses only. A pretension pulls the mouth against the plate, after the
  * grout has set.
@@ -23,24 +22,13 @@
  *
  * Forces on nodes are the gradient of the energy in their places, with the axes. So forces and moments add up to zero,
  * and turning with the rock costs nothing. Within a body the line of the bolt is that of its nodes. */
+#include "chain.h"
+
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Limit: Newton passes of a step; what is left then is mended in the next step. */
-#define PASSES 40
-/* Limit: parts of one pass that are tried; the part that is reached is good enough. */
-#define SEARCH 12
-/* Constant: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. */
-#define OVERSHOT 0.5
-/* Tolerance: relative to the largest force of the bolt, the unbalance with which the passes end. */
-#define BALANCED 1e-11
-/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. */
-#define ROUNDED 1e-15
 /* Tolerance: over how far two nodes have moved apart, an elongation that rounding explains. Test: `talus check`. */
 #define NOISE 2e-15
-/* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
- * gives the same forces. */
-#define LEFT 1e-4
 /* Constant: over the diameter, the length of steel in a crossing without a void. */
 #define SHORT 1e-3
 /* Constant: over the diameter, the active length where none is given. */
@@ -116,7 +104,7 @@ enum { /* of a node */
        CUT,
        NODE_STATES
 };
-enum { AXIAL, SLIP, SHEAR, PLATE, SEAT, WHOLE_STATES }; /* of the whole */
+enum { AXIAL, SLIP, SHEAR, PLATE, SEAT, SLIPPED, BREAKS, WHOLE_STATES }; /* of the whole */
 
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "tension", "N", "in the steel from here to the next node"),
@@ -135,172 +123,9 @@ static const tl_state state_table[] = {
     TL_STATE(TL_STATE_WHOLE, "slip", "m", "largest slip of the grout, of either sign"),
     TL_STATE(TL_STATE_WHOLE, "shear", "N", "largest force of a dowel"),
     TL_STATE(TL_STATE_WHOLE, "plate", "N", "force of the plate on the rock"),
-    TL_STATE(TL_STATE_WHOLE, "seat", "m", "displacement of the mouth at which the plate bears nothing")};
-
-/* ---------------------------------------------------------------- the steel -------------- */
-
-/* The steel and the springs that hold it. Segment k goes from node k to the next. */
-typedef struct chain {
-    uint32_t count;
-    double w[TL_ELEMENT_NODES], rock[TL_ELEMENT_NODES], slip[TL_ELEMENT_NODES]; /* m */
-    double hold[TL_ELEMENT_NODES];                                              /* N/m, of the grout */
-    double bond[TL_ELEMENT_NODES], residual[TL_ELEMENT_NODES];                  /* N */
-    bool worn[TL_ELEMENT_NODES];
-    double stiff[TL_ELEMENT_NODES], even[TL_ELEMENT_NODES]; /* N/m, of segments: E A / h and E A / gauge */
-    double plastic[TL_ELEMENT_NODES], limit[TL_ELEMENT_NODES];
-    double gauge[TL_ELEMENT_NODES];        /* m, over which the strain counts */
-    double seat, plate_stiff, plate_limit; /* the plate is at node 0 */
-    double pull;                           /* N, by which the mouth is pulled out */
-    /* the answer: forces, forces that there would be without a limit, and what is left of the stiffness */
-    double grout[TL_ELEMENT_NODES], grout_trial[TL_ELEMENT_NODES], grout_tangent[TL_ELEMENT_NODES];
-    double tension[TL_ELEMENT_NODES], tension_trial[TL_ELEMENT_NODES], tension_tangent[TL_ELEMENT_NODES];
-    double plate, plate_trial, plate_tangent;
-    double off[TL_ELEMENT_NODES]; /* N, unbalance of the steel */
-} chain;
-
-/* As fmax and fmin, which compilers do not put inline for the sake of NaN. */
-static inline double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-static inline double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static inline double within(double x, double limit)
-{
-    return larger(-limit, smaller(limit, x));
-}
-
-/* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
-static void respond(chain *c, bool elastic)
-{
-    const uint32_t n = c->count;
-    for (uint32_t k = 0; k < n; k++) {
-        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
-        c->grout_trial[k] = trial;
-        c->grout[k] = elastic ? trial : within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
-        c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * smaller(c->hold[k], c->even[k]);
-    }
-    for (uint32_t k = 0; k + 1 < n; k++) {
-        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
-        c->tension_trial[k] = trial;
-        c->tension[k] = elastic && c->limit[k] > 0 ? trial : within(trial, c->limit[k]);
-        c->tension_tangent[k] = c->tension[k] == trial ? c->stiff[k] : LEFT * c->even[k];
-    }
-    c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
-    c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
-    c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * smaller(c->plate_stiff, c->even[0]);
-}
-
-/* Grout beyond its bond falls to the residual; whether some has. */
-static bool wear(chain *c)
-{
-    bool wears = false;
-    for (uint32_t k = 0; k < c->count; k++)
-        if (!c->worn[k] && fabs(c->grout_trial[k]) > c->bond[k]) {
-            c->worn[k] = true;
-            c->grout[k] = within(c->grout_trial[k], c->residual[k]);
-            wears = wears || c->residual[k] < c->bond[k];
-        }
-    return wears;
-}
-
-/* Whether the steel is in equilibrium; fills `off`. */
-static bool is_balanced(chain *c)
-{
-    double most = fabs(c->pull) + c->plate, off = 0, before = -c->plate - c->pull;
-    double stiffest = c->plate_stiff, moved = fabs(c->seat);
-    for (uint32_t k = 0; k < c->count; k++) {
-        const double after = k + 1 < c->count ? c->tension[k] : 0;
-        c->off[k] = after + before - c->grout[k];
-        before = -after;
-        off = larger(off, fabs(c->off[k]));
-        most = larger(most, larger(fabs(after), fabs(c->grout[k])));
-        stiffest = larger(stiffest, larger(c->hold[k], k + 1 < c->count ? c->stiff[k] : 0));
-        moved = larger(moved, larger(fabs(c->w[k]), fabs(c->rock[k])));
-        moved = larger(moved, fabs(c->slip[k]));
-    }
-    return off <= BALANCED * most + ROUNDED * stiffest * moved;
-}
-
-/* The step of w of a Newton pass: elimination down the three bands, and back. */
-static void find_step(const chain *c, double *step)
-{
-    double over[TL_ELEMENT_NODES], inverse[TL_ELEMENT_NODES]; /* upper band over the pivot, 1 over the pivot */
-    double before = 0, part = 0, alone = 1, carried = 0;
-    const uint32_t n = c->count;
-    for (uint32_t k = 0; k < n; k++) {
-        const double after = k + 1 < n ? c->tension_tangent[k] : 0;
-        /* what is left of the segment before when all nodes before it are eliminated */
-        const double own = c->grout_tangent[k] + (k == 0 ? c->plate_tangent : 0) + before * alone;
-        const double pivot = own + after;
-        inverse[k] = pivot > 0 ? 1 / pivot : 0;
-        carried = c->off[k] + part * carried;
-        step[k] = carried * inverse[k];
-        part = over[k] = after * inverse[k];
-        alone = own * inverse[k];
-        before = after;
-    }
-    for (uint32_t k = n - 1; k-- > 0;)
-        step[k] += over[k] * step[k + 1];
-}
-
-/* Goes a part of a step on from `from`. Gives the unbalance along the step, J, which falls to 0 at the best part. */
-static double go(chain *c, const double *from, const double *step, double part, bool *balanced)
-{
-    double sum = 0;
-    for (uint32_t k = 0; k < c->count; k++)
-        c->w[k] = from[k] + part * step[k];
-    respond(c, false);
-    *balanced = is_balanced(c);
-    for (uint32_t k = 0; k < c->count; k++)
-        sum += c->off[k] * step[k];
-    return sum;
-}
-
-/* A Newton pass. Where it goes too far, beyond where the energy along the step is least, it goes back. */
-static bool advance(chain *c)
-{
-    double step[TL_ELEMENT_NODES], from[TL_ELEMENT_NODES], least = 0, most = 1;
-    bool balanced;
-    find_step(c, step);
-    memcpy(from, c->w, c->count * sizeof *from);
-    const double begin = go(c, from, step, 0, &balanced);
-    double low = begin, high = go(c, from, step, 1, &balanced);
-    for (int k = 0; k < SEARCH && high < -OVERSHOT * begin && !balanced; k++) {
-        const double part = k % 3 == 2 ? 0.5 * (least + most) : least + (most - least) * low / (low - high);
-        const double at = go(c, from, step, part, &balanced);
-        if (fabs(at) <= OVERSHOT * begin)
-            break;
-        *(at > 0 ? &least : &most) = part;
-        *(at > 0 ? &low : &high) = at;
-    }
-    return balanced;
-}
-
-/* Finds w; true when the steel is in equilibrium. It begins with what the steel would do if nothing had a limit. */
-static bool solve(chain *c)
-{
-    respond(c, true);
-    if (!is_balanced(c)) {
-        double step[TL_ELEMENT_NODES];
-        find_step(c, step);
-        for (uint32_t k = 0; k < c->count; k++)
-            c->w[k] += step[k];
-    }
-    respond(c, false);
-    wear(c);
-    bool balanced = is_balanced(c);
-    for (int pass = 0; pass < PASSES && !balanced; pass++) {
-        balanced = advance(c);
-        if (wear(c))
-            balanced = is_balanced(c);
-    }
-    return balanced;
-}
+    TL_STATE(TL_STATE_WHOLE, "seat", "m", "displacement of the mouth at which the plate bears nothing"),
+    TL_STATE(TL_STATE_WHOLE, "slipped", "m", "length of the grout that has slipped"),
+    TL_STATE(TL_STATE_WHOLE, "breaks", "", "places where steel is broken or a dowel is cut")};
 
 /* ---------------------------------------------------------------- the bolt --------------- */
 
@@ -427,11 +252,17 @@ static void begin_chain(chain *c, const params *p, const tl_line_node *at, size_
 static tl_status tighten(const tl_element_host *host, const params *p, chain *c, double *state, double *whole)
 {
     c->pull = p->pretension;
-    if (!solve(c))
+    if (!chain_solve(c))
         return host->fail(host, TL_E_ARGUMENT,
                           "pretension = %g N pulls the bolt out of its grout: lower it, or grout "
                           "more of the bolt",
                           p->pretension);
+    for (uint32_t k = 0; k + 1 < c->count; k++)
+        if (fabs(c->w[k + 1] - c->w[k]) >= p->rupture_strain * c->gauge[k])
+            return host->fail(host, TL_E_ARGUMENT,
+                              "pretension = %g N strains the steel by %g, and rupture_strain = %g: lower it, or take a "
+                              "stiffer steel",
+                              p->pretension, fabs(c->w[k + 1] - c->w[k]) / c->gauge[k], p->rupture_strain);
     double axial = 0;
     for (uint32_t k = 0; k < c->count; k++) {
         double *of = &state[k * NODE_STATES];
@@ -658,10 +489,32 @@ static void keep_grout(const bolt *t, const tl_element_batch *b, uint32_t e, boo
     b->element_state[SLIP][e] = most;
 }
 
+/* Counts the length of grout that has slipped. Where that is all on one side of a joint, and with a loss of bond, the
+ * bolt is pulled out: broken. */
+static void keep_bond(const bolt *t, const tl_element_batch *b, uint32_t e)
+{
+    const chain *c = &t->c;
+    double slipped = 0, side = 0, side_slipped = 0;
+    for (uint32_t k = 0, next = 0; k < c->count; k++) {
+        const double length = b->state[GROUTED][t->row[k]];
+        side += length;
+        side_slipped += c->worn[k] && c->residual[k] < c->bond[k] ? length : 0;
+        slipped += c->worn[k] ? length : 0;
+        const bool crosses = next < t->crossings && t->cross[next].segment == k;
+        if (!crosses && k + 1 < c->count)
+            continue;
+        if (t->crossings > 0 && side > 0 && side_slipped == side)
+            b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
+        next += crosses;
+        side = side_slipped = 0;
+    }
+    b->element_state[SLIPPED][e] = slipped;
+}
+
 static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b, uint32_t e, books *sum)
 {
     const chain *c = &t->c;
-    double most = 0;
+    double most = 0, cuts = 0;
     for (uint32_t k = 0; k < c->count; k++) {
         const uint32_t i = t->row[k];
         const bool last = k + 1 == c->count;
@@ -676,8 +529,10 @@ static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b
             b->state[CUT][i] = 1; /* it bears nothing from the next step on */
             b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
         }
+        cuts += b->state[CUT][i];
     }
     b->element_state[AXIAL][e] = most;
+    b->element_state[BREAKS][e] = cuts;
 }
 
 /* The mouth that moves by x presses the plate by (P' - P) / k; the rest of x crushes it or is a gap. */
@@ -719,6 +574,7 @@ static void keep_dowels(bolt *t, const params *p, const tl_element_batch *b, uin
         b->flags[e] |= has < p->dowel_stiffness ? (uint32_t)TL_ELEMENT_YIELDED : 0;
         *dowel = x->shear;
         most = larger(most, x->shear);
+        b->element_state[BREAKS][e] += p->dowel_stiffness > 0 && *peak >= p->dowel_rupture;
     }
     b->element_state[SHEAR][e] = most;
 }
@@ -791,11 +647,13 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
         const double before = whole ? 0 : work_on(b, e);
         if (t.c.count > 0) {
             follow_rock(&t, p, &s, b);
-            solve(&t.c);
+            chain_solve(&t.c);
             keep_plate(&t, b, e, &sum);
             keep_grout(&t, b, e, &sum);
             keep_steel(&t, p, b, e, &sum);
             keep_dowels(&t, p, b, e, &sum);
+            if (b->flags[e] & (uint32_t)TL_ELEMENT_YIELDED)
+                keep_bond(&t, b, e);
         }
         put_forces(&t, b, e);
         /* what gone nodes held is heat */

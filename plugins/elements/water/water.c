@@ -15,15 +15,10 @@
  *
  * A joint keeps its water until its mean opening passes `drain_gap`; then it is dry and stays so. What water does on
  * blocks comes from outside. */
-#include <talus/kit.h>
-#include <talus/version.h>
+#include "flow.h"
+#include "joints.h"
 
-/* Corners of a polygon, at the most: those of two faces, and one more by a cut. */
-#define MOST_CORNERS 256
-/* Tolerance: degrees by which the normals of two walls may be off opposite. */
-#define MOST_TILT 5.0
-/* Constant: a joint that is dry is remembered until it is so many times as wide open as where it ran dry. */
-#define FORGOTTEN 10.0
+#include <talus/version.h>
 
 enum { TABLE, UNIFORM, FIELD, NONE };
 
@@ -91,18 +86,7 @@ static double depth_of(const table *t, tl_vec3 x)
 
 /* ---------------------------------------------------------------- polygons --------------- */
 
-/* A polygon on both walls: corner i of one is opposite to corner i of the other. */
-typedef struct polygon {
-    tl_vec3 at[2][MOST_CORNERS];
-    size_t count;
-} polygon;
-
-static tl_vec3 middle(const polygon *p, size_t i)
-{
-    return tl_v3_scale(0.5, tl_v3_add(p->at[0][i], p->at[1][i]));
-}
-
-static void put_between(polygon *to, const polygon *p, size_t i, size_t j, double part)
+static void put_between(joint_polygon *to, const joint_polygon *p, size_t i, size_t j, double part)
 {
     for (int k = 0; k < 2; k++)
         to->at[k][to->count] = tl_v3_madd(p->at[k][i], part, tl_v3_sub(p->at[k][j], p->at[k][i]));
@@ -110,12 +94,12 @@ static void put_between(polygon *to, const polygon *p, size_t i, size_t j, doubl
 }
 
 /* What lies below a table. */
-static void cut(const polygon *p, const table *t, polygon *wet)
+static void cut(const joint_polygon *p, const table *t, joint_polygon *wet)
 {
     wet->count = 0;
     for (size_t i = 0; i < p->count; i++) {
         const size_t j = i + 1 < p->count ? i + 1 : 0;
-        const double h = depth_of(t, middle(p, i)), g = depth_of(t, middle(p, j));
+        const double h = depth_of(t, joint_middle(p, i)), g = depth_of(t, joint_middle(p, j));
         if (h > 0)
             put_between(wet, p, i, j, 0);
         if ((h > 0) != (g > 0))
@@ -123,70 +107,11 @@ static void cut(const polygon *p, const table *t, polygon *wet)
     }
 }
 
-/* Area, centroid and two axes a, b for which a a^t + b b^t are the second moments per area, halfway between the
- * walls. */
-typedef struct moments {
-    double area;
-    tl_vec3 centroid, normal, a, b;
-} moments;
-
-static moments moments_of(const polygon *p, tl_vec3 normal)
-{
-    moments m = {.normal = normal};
-    const tl_vec3 o = middle(p, 0), x = tl_v3_perpendicular(normal), y = tl_v3_cross(normal, x);
-    double sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
-    for (size_t i = 1; i + 1 < p->count; i++) {
-        const tl_vec3 r = tl_v3_sub(middle(p, i), o), s = tl_v3_sub(middle(p, i + 1), o);
-        const double rx = tl_v3_dot(r, x), ry = tl_v3_dot(r, y), qx = tl_v3_dot(s, x), qy = tl_v3_dot(s, y);
-        const double part = 0.5 * (rx * qy - ry * qx);
-        m.area += part;
-        sx += part * (rx + qx) / 3;
-        sy += part * (ry + qy) / 3;
-        xx += part * (rx * rx + rx * qx + qx * qx) / 6;
-        xy += part * (2 * rx * ry + rx * qy + qx * ry + 2 * qx * qy) / 12;
-        yy += part * (ry * ry + ry * qy + qy * qy) / 6;
-    }
-    if (!(m.area > 0))
-        return m;
-    sx /= m.area;
-    sy /= m.area;
-    xx = xx / m.area - sx * sx;
-    xy = xy / m.area - sx * sy;
-    yy = yy / m.area - sy * sy;
-    const double l = sqrt(fmax(xx, 0)), k = l > 0 ? xy / l : 0, n = sqrt(fmax(yy - k * k, 0));
-    m.centroid = tl_v3_madd(tl_v3_madd(o, sx, x), sy, y);
-    m.a = tl_v3_madd(tl_v3_scale(l, x), k, y);
-    m.b = tl_v3_scale(n, y);
-    return m;
-}
-
 /* ---------------------------------------------------------------- placing ---------------- */
-
-static uint64_t mixed(uint64_t a, uint64_t b)
-{
-    uint64_t z = (a ^ (b + 0x9e3779b97f4a7c15u + (a << 6) + (a >> 2))) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
-/* The name of a wall: its blocks, faces, and which one it is of those. */
-static uint64_t key_of(const tl_element_wall *w, uint32_t which)
-{
-    const uint64_t blocks = (uint64_t)w->block[0] << 32 | w->block[1], faces = (uint64_t)w->face[0] << 32 | w->face[1];
-    const uint64_t key = mixed(mixed(blocks, faces), which);
-    return key ? key : 1;
-}
-
-/* Where a line along n through x meets wall k. */
-static tl_vec3 on_wall(const tl_element_wall *w, int k, tl_vec3 n, tl_vec3 x)
-{
-    const double t = tl_v3_dot(w->normal[k], tl_v3_sub(w->corners[k][0], x)) / tl_v3_dot(w->normal[k], n);
-    return tl_v3_madd(x, t, n);
-}
 
 static tl_status place_wall(const tl_element_host *host, const params *p, const tl_element_wall *w, uint32_t which)
 {
-    polygon all, wet;
+    joint_polygon all, wet;
     all.count = w->corner_count;
     if (all.count >= MOST_CORNERS)
         return host->fail(host, TL_E_ARGUMENT,
@@ -194,7 +119,7 @@ static tl_status place_wall(const tl_element_host *host, const params *p, const 
                           w->block[1], w->corner_count, MOST_CORNERS - 1);
     for (int k = 0; k < 2; k++)
         memcpy(all.at[k], w->corners[k], all.count * sizeof **all.at);
-    const polygon *of = &all;
+    const joint_polygon *of = &all;
     if (p->source == TABLE) {
         const table t = table_of(p);
         cut(&all, &t, &wet);
@@ -202,7 +127,7 @@ static tl_status place_wall(const tl_element_host *host, const params *p, const 
     }
     const bool above = p->source == NONE || (p->source == TABLE && wet.count < 3);
     const tl_vec3 n = tl_v3_unit(tl_v3_sub(w->normal[0], w->normal[1]));
-    const moments m = moments_of(of, n);
+    const joint_moments m = joint_moments_of(of, n);
     const int points = above || p->source == UNIFORM ? 1 : 3;
     tl_element_node nodes[6];
     for (int k = 0; k < 2; k++)
@@ -210,7 +135,7 @@ static tl_status place_wall(const tl_element_host *host, const params *p, const 
             static const double y[3][2] = {{1, 0}, {-0.5, 0.86602540378443864676}, {-0.5, -0.86602540378443864676}};
             const double far = points == 3 ? sqrt(2) : 0;
             const tl_vec3 x = tl_v3_madd(tl_v3_madd(m.centroid, far * y[i][0], m.a), far * y[i][1], m.b);
-            nodes[points * k + i] = (tl_element_node){w->block[k], on_wall(w, k, n, x), w->normal[k],
+            nodes[points * k + i] = (tl_element_node){w->block[k], joint_on_wall(w, k, n, x), w->normal[k],
                                                       above ? 0 : m.area / fabs(tl_v3_dot(n, w->normal[k])) / points};
         }
     const double state[] = {above ? 0 : m.area, w->opening, w->opening > p->drain_gap};
@@ -218,7 +143,7 @@ static tl_status place_wall(const tl_element_host *host, const params *p, const 
                                              .nodes = nodes,
                                              .count = 2 * (size_t)points,
                                              .state = state,
-                                             .key = key_of(w, which)});
+                                             .key = joint_key(w, which)});
 }
 
 /* Refuses what does not make a source. */
@@ -230,6 +155,15 @@ static tl_status check(const tl_element_host *host, const params *p)
         return host->fail(host, TL_E_ARGUMENT, "a table needs level, or dip, dip_direction and origin");
     if (p->source == TABLE && !isnan(p->level) && dips)
         return host->fail(host, TL_E_ARGUMENT, "give a table level, or dip, dip_direction and origin, not both");
+    if (p->source != TABLE && (!isnan(p->level) || dips))
+        return host->fail(host, TL_E_ARGUMENT,
+                          "level, dip, dip_direction and origin are of a table: leave them out of source '%s'",
+                          sources[p->source]);
+    if (p->source != UNIFORM && !isnan(p->pressure))
+        return host->fail(host, TL_E_ARGUMENT, "pressure is of a uniform source: leave it out of source '%s'",
+                          sources[p->source]);
+    if (p->joints[0] == '\0')
+        return host->fail(host, TL_E_ARGUMENT, "joints = '' names none: name joints, or leave it out for all");
     if (p->source == UNIFORM && isnan(p->pressure))
         return host->fail(host, TL_E_ARGUMENT, "a uniform source needs pressure, Pa");
     return TL_OK;
@@ -245,10 +179,8 @@ static tl_status place(const tl_element_host *host, const void *given)
     if (status == TL_OK)
         status = host->walls(host, &filter, &walls, &count);
     for (size_t i = 0, which = 0; status == TL_OK && i < count; i++) {
-        const tl_element_wall *w = &walls[i], *last = i ? w - 1 : w;
-        const bool same = last->block[0] == w->block[0] && last->block[1] == w->block[1] &&
-                          last->face[0] == w->face[0] && last->face[1] == w->face[1];
-        which = i && same ? which + 1 : 0;
+        const tl_element_wall *w = &walls[i];
+        which = i && joint_same_faces(w - 1, w) ? which + 1 : 0;
         if (!host->again && w->opening > p->drain_gap)
             continue;
         status = place_wall(host, p, w, (uint32_t)which);
@@ -331,9 +263,11 @@ static const tl_element_ops ops = {.size = sizeof ops,
                                    .lays_again = 1,
                                    .steady = 1};
 
-static const tl_kind kind =
+static const tl_kind kinds[] = {
     TL_KIND(TL_KIND_ELEMENT, ops, .name = "water", .doc = "Water that presses on the walls of joints: model:water.",
-            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table)),
+    TL_KIND(TL_KIND_ELEMENT, flow_ops, .name = "flow", .doc = "Water that flows in joints: model:water(\"flow\").",
+            TL_KIND_PARAMS(flow_params, flow_param_table), TL_KIND_STATES(flow_state_table))};
 
-TL_PLUGIN_SINCE(13, kind, .id = "talus.water", .version = TALUS_VERSION, .doc = "Water in joints.",
+TL_PLUGIN_SINCE(15, kinds, .id = "talus.water", .version = TALUS_VERSION, .doc = "Water in joints.",
                 .licence = "BSD-3-Clause");

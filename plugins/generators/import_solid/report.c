@@ -95,6 +95,8 @@ static tl_status note_object(const solids *s, uint32_t object, const char *name)
     if (status == TL_OK)
         status = note_count(s, name, "collapsed", d->collapsed);
     if (status == TL_OK)
+        status = note_count(s, name, "between", d->between);
+    if (status == TL_OK)
         status = note_count(s, name, "merged", d->merged);
     if (status == TL_OK)
         status = note_count(s, name, "turned", d->turned);
@@ -141,7 +143,8 @@ static tl_status note_whole(const solids *s, size_t blocks, size_t refused)
                 {"made_plane", (double)s->made_plane},
                 {"shared", (double)s->shared},
                 {"move", s->largest_move},
-                {"left_aside", (double)s->soup.unread}};
+                {"left_aside", (double)s->soup.unread},
+                {"long_names", (double)s->soup.long_names}};
     tl_status status = TL_OK;
     for (size_t i = 0; i < sizeof rows / sizeof *rows && status == TL_OK; i++)
         status = h->note(h, NULL, rows[i].key, rows[i].number, NULL);
@@ -160,6 +163,9 @@ static void say(const solids *s, size_t blocks, size_t refused)
                       s->soup.unread);
     s->host->log(s->host, "%zu blocks of %zu objects; weld = %.3g m (%s), flat = %.3g m (%s)%s; %zu faces shared%s",
                  blocks, s->soup.objects, s->weld, s->weld_from, s->flat, s->flat_from, moved, s->shared, left);
+    if (s->soup.long_names)
+        s->host->log(s->host, "%zu names of objects or groups are longer than %d letters; their ends are now a number",
+                     s->soup.long_names, LONGEST_NAME);
 }
 
 tl_status report_write(solids *s, size_t blocks)

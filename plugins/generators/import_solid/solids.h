@@ -1,8 +1,9 @@
 /* solids.h - from the faces of a file to closed solids with plane faces, and to blocks.
  *
- * An object is welded, closed, turned outward and divided into its shells (weld.c). Faces of a shell in one plane
- * become one side (sides.c). Sides of two solids at one place get one plane (shared.c). Vertices are moved into the
- * planes of their sides (plane.c). Then each solid becomes a block (create.c). Refused ones are listed (report.c). */
+ * An object is welded, closed, turned outward and divided into its shells (weld.c, between.c). Faces of a shell in
+ * one plane become one side (sides.c). Sides of two solids at one place get one plane (shared.c). Vertices are moved
+ * into the planes of their sides (plane.c). Then each solid becomes a block (create.c). Refused ones are listed
+ * (report.c). */
 #ifndef IMPORT_SOLID_SOLIDS_H
 #define IMPORT_SOLID_SOLIDS_H
 
@@ -31,7 +32,7 @@ typedef struct solid {
 
 /* What was done to an object. */
 typedef struct done {
-    uint32_t welded, collapsed, turned, merged, shells;
+    uint32_t welded, collapsed, between, turned, merged, shells;
     bool inside_out;
 } done;
 
@@ -103,6 +104,13 @@ uint32_t mesh_next(const mesh *m, uint32_t h);
 void mesh_free(mesh *m);
 /* Welds and closes an object into m, or refuses it: *taken is false then. */
 tl_status mesh_close(solids *s, uint32_t object, mesh *m, bool *taken);
+
+/* Makes room for so many corners. */
+bool mesh_room(mesh *m, size_t corners);
+
+/* Makes vertices that lie within `weld` of edges of one face corners of it (between.c). `lone` has such edges'
+ * half-edges, in their order. Tells how many corners it has made; false for want of memory. */
+bool mesh_take_between(mesh *m, const uint32_t *lone, size_t count, double weld, uint32_t *takes);
 
 /* Adds the shells of the closed object as solids (sides.c). */
 tl_status sides_add(solids *s, uint32_t object, mesh *m);

@@ -50,21 +50,33 @@ tl_status soup_face(soup *s, const uint32_t *corner, size_t count)
     return TL_OK;
 }
 
-/* The bytes of a name that are kept: no more than fit, and whole letters of UTF-8. */
-static size_t cut_name(const char *name, size_t length)
+/* Writes a name that is too long: what fits of it, in whole letters of UTF-8, and a number made of all of it (FNV-1a),
+ * so that names which differ stay apart. Returns its length. */
+static size_t short_name(const char *name, size_t length, char to[LONGEST_NAME + 1])
 {
-    if (length <= LONGEST_NAME)
-        return length;
-    length = LONGEST_NAME;
-    while (length > 0 && ((unsigned char)name[length] & 0xc0) == 0x80)
-        length--;
-    return length;
+    uint32_t number = 2166136261u;
+    for (size_t i = 0; i < length; i++)
+        number = (number ^ (unsigned char)name[i]) * 16777619u;
+    char tail[10];
+    tl_text_print(tail, sizeof tail, "~%08x", number);
+    size_t head = LONGEST_NAME - strlen(tail);
+    while (head > 0 && ((unsigned char)name[head] & 0xc0) == 0x80)
+        head--;
+    memcpy(to, name, head);
+    memcpy(to + head, tail, strlen(tail) + 1);
+    return strlen(to);
 }
 
 /* Keeps a name; that of the object before is kept once. */
 static bool keep_name(soup *s, const char *name, size_t length, uint32_t before, uint32_t *kept)
 {
-    length = name ? cut_name(name, length) : 0;
+    char fits[LONGEST_NAME + 1];
+    length = name ? length : 0;
+    if (length > LONGEST_NAME) {
+        s->long_names++;
+        length = short_name(name, length, fits);
+        name = fits;
+    }
     *kept = before;
     if (s->names_length > 0 && strlen(s->names + before) == length &&
         (length == 0 || memcmp(s->names + before, name, length) == 0))

@@ -11,7 +11,8 @@
 #define MOST_CORNERS 0x7fffffffu
 /* Limit: most corners of one face. */
 #define MOST_SIDES 4096
-/* Limit: longest name of an object or a group, in bytes; longer ones are cut. */
+/* Limit: longest name of an object or a group, in bytes. The end of a longer one is replaced by a number that tells it
+ * from others. */
 #define LONGEST_NAME 63
 #define NONE UINT32_MAX
 
@@ -40,6 +41,7 @@ typedef struct soup {
     int decimals, digits; /* most digits after the point, and of a number, in a text */
     double rounding;      /* of binary numbers, relative; 0: it is a text */
     size_t unread;        /* commands of the file that are none of solids */
+    size_t long_names;    /* how often a name was too long */
 } soup;
 
 /* Refuses the file, with a sentence that goes on behind its name. */

@@ -1,11 +1,12 @@
 /* weld.c - closes an object: from loose faces to shells.
  *
- * Vertices within `weld` of each other become one, at their mean. Faces that lose their area by it go. Every edge then
- * belongs to two faces. Neighbours that run along it the same way are turned against each other: of faces that hang
- * together the fewer are turned. Where shells touch along an edge, four faces or more meet there. Faces that close a
- * surface by the file's numbers of their vertices are a part, and belong with each other. Among other faces, a
- * half-edge belongs with that of the face which is met first when turning from its own face through the inside. A
- * shell of negative volume is turned inside out. */
+ * Vertices within `weld` of each other become one, at their mean. Faces that lose their area by it go. Edges take up
+ * vertices that lie on them, where these are the ends of other edges (between.c). Every edge then belongs to two faces.
+ * Neighbours that run along it the same way are turned against each other: of faces that hang together the fewer are
+ * turned. Where shells touch along an edge, four faces or more meet there. Faces that close a surface by the file's
+ * numbers of their vertices are a part, and belong with each other. Among other faces, a half-edge belongs with that of
+ * the face which is met first when turning from its own face through the inside. A shell of negative volume is turned
+ * inside out. */
 #include "solids.h"
 
 #include <stdlib.h>
@@ -55,6 +56,25 @@ static bool resize(void *list, size_t count, size_t each)
     return moved != NULL;
 }
 
+bool mesh_room(mesh *m, size_t corners)
+{
+    if (corners <= m->corner_room)
+        return true;
+    if (!resize(&m->vertex, corners, sizeof *m->vertex) || !resize(&m->corner, corners, sizeof *m->corner) ||
+        !resize(&m->face_of, corners, sizeof *m->face_of) || !resize(&m->mate, corners, sizeof *m->mate) ||
+        !resize(&m->next, corners, sizeof *m->next) || !resize(&m->root, corners, sizeof *m->root) ||
+        !resize(&m->sides, corners, sizeof(side)))
+        return false;
+    size_t cells = 64;
+    while (cells < 2 * corners)
+        cells *= 2;
+    if (!resize(&m->cell, cells, sizeof *m->cell))
+        return false;
+    m->cell_room = cells;
+    m->corner_room = corners;
+    return true;
+}
+
 /* Room for an object of so many corners and faces. */
 static bool make_room(const solids *s, mesh *m, size_t corners, size_t faces)
 {
@@ -64,20 +84,8 @@ static bool make_room(const solids *s, mesh *m, size_t corners, size_t faces)
             return false;
         memset(m->local, 0xff, (s->soup.vertices + 1) * sizeof *m->local);
     }
-    if (corners > m->corner_room) {
-        if (!resize(&m->vertex, corners, sizeof *m->vertex) || !resize(&m->corner, corners, sizeof *m->corner) ||
-            !resize(&m->face_of, corners, sizeof *m->face_of) || !resize(&m->mate, corners, sizeof *m->mate) ||
-            !resize(&m->next, corners, sizeof *m->next) || !resize(&m->root, corners, sizeof *m->root) ||
-            !resize(&m->sides, corners, sizeof(side)))
-            return false;
-        size_t cells = 64;
-        while (cells < 2 * corners)
-            cells *= 2;
-        if (!resize(&m->cell, cells, sizeof *m->cell))
-            return false;
-        m->cell_room = cells;
-        m->corner_room = corners;
-    }
+    if (!mesh_room(m, corners))
+        return false;
     if (faces > m->face_room) {
         if (!resize(&m->face, faces, sizeof *m->face) || !resize(&m->part, faces, sizeof *m->part))
             return false;
@@ -304,6 +312,21 @@ static void sort_edges(mesh *m)
         m->mate[h] = NONE;
     }
     qsort(list, m->corners, sizeof *list, by_edge);
+}
+
+/* Lets edges of one face take up vertices that lie on them. */
+static bool take_between(mesh *m, double weld, done *d)
+{
+    const side *list = m->sides;
+    size_t lone = 0;
+    sort_edges(m);
+    for (size_t from = 0, to; from < m->corners; from = to) {
+        to = edge_end(m, m->corners, from);
+        if (to == from + 1)
+            m->root[lone++] = list[from].half;
+    }
+    qsort(m->root, lone, sizeof *m->root, by_number);
+    return lone == 0 || mesh_take_between(m, m->root, lone, weld, &d->between);
 }
 
 /* Where two faces share an edge, they are neighbours in any case. */
@@ -608,6 +631,8 @@ tl_status mesh_close(solids *s, uint32_t object, mesh *m, bool *taken)
                              " has %zu face%s: it closes no solid, which takes 4 or more; export all its faces",
                              m->faces, m->faces == 1 ? "" : "s");
     }
+    if (!take_between(m, s->weld, d))
+        return soup_no_memory(from);
     sort_edges(m);
     pair_twos(m);
     if (!agree(m, d)) {

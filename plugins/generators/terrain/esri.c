@@ -54,6 +54,8 @@ static tl_status read_header(const tl_host *host, const char *file, words *w, he
 {
     char word[MOST_LETTERS + 1];
     tl_status status = TL_OK;
+    if (strncmp(w->at, "\xef\xbb\xbf", 3) == 0) /* UTF-8's mark */
+        w->at += 3;
     while (status == TL_OK) {
         const words before = *w;
         double number;

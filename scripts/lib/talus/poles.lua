@@ -14,6 +14,8 @@ poles.__index = poles
 local STARTS, MOST_STEPS = 20, 200
 -- Terzaghi's weight ends here: a joint nearly along the scan line would count for all others.
 local MOST_WEIGHT = 10
+-- Bytes of a file: a device may never end.
+local MOST_BYTES = 1 << 26
 
 -- planes: a sorted list of {dip, dip_direction, weight}.
 local function make(planes)
@@ -266,7 +268,10 @@ local function read(given)
     elseif type(given) == "string" then
         what = "'" .. given .. "'"
         local file, reason = io.open(given, "rb")
-        text = file and file:read "a"
+        if file then
+            text, reason = file:read(MOST_BYTES)
+            text = text or not reason and "" -- an empty file
+        end
         if not text then
             fail("poles: %s cannot be read: %s", what, reason and reason:gsub("^.*: ", "") or "it is no regular file")
         end

@@ -1,0 +1,312 @@
+/* chain.c - the displacements of the steel of a bolt: of a chain of springs with limits.
+ *
+ * First all is taken as elastic. Where a limit is passed, Newton passes with the three-band matrix follow, as a rule
+ * one to three. Steel that yields beside grout that slips can make them turn in a circle: then w is found directly.
+ *
+ * Let L_k(w) be the tension behind node k with which the nodes up to k are in equilibrium when node k is at w. It rises
+ * with w in straight pieces, between its *knots*:
+ *
+ *     L_0(w) = plate(w) + pull + grout_0(w),    L_k+1(w) = grout_k+1(w) + N,    N = L_k(w - N / stiff - plastic)
+ *
+ * with |N| <= yield, which cuts off the knots beyond. Let node k be between low_k and high_k where that is so. At the
+ * end L = 0 gives w, and going back,
+ *
+ *     w_k = w_k+1 - N_k / stiff - plastic, within low_k and high_k.
+ *
+ * The way of solving is that of Johnson, J. Comp. Graph. Stat. 22 (2013) 246-260, for another chain of this kind. */
+#include "chain.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Cost only: Newton passes before w is found directly, and after that, against rounding. */
+#define PASSES 6
+/* Limit: parts of one pass that are tried; the part that is reached is good enough. */
+#define SEARCH 12
+/* Constant: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. */
+#define OVERSHOT 0.5
+/* Tolerance: relative to the largest force of the bolt, the unbalance with which the passes end. */
+#define BALANCED 1e-11
+/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. */
+#define ROUNDED 1e-15
+/* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
+ * gives the same forces. */
+#define LEFT 1e-4
+
+static inline double within(double x, double limit)
+{
+    return larger(-limit, smaller(limit, x));
+}
+
+/* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
+static void respond(chain *c, bool elastic)
+{
+    const uint32_t n = c->count;
+    for (uint32_t k = 0; k < n; k++) {
+        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
+        c->grout_trial[k] = trial;
+        c->grout[k] = elastic ? trial : within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
+        c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * smaller(c->hold[k], c->even[k]);
+    }
+    for (uint32_t k = 0; k + 1 < n; k++) {
+        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
+        c->tension_trial[k] = trial;
+        c->tension[k] = elastic && c->limit[k] > 0 ? trial : within(trial, c->limit[k]);
+        c->tension_tangent[k] = c->tension[k] == trial ? c->stiff[k] : LEFT * c->even[k];
+    }
+    c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
+    c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
+    c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * smaller(c->plate_stiff, c->even[0]);
+}
+
+/* Grout beyond its bond falls to the residual; whether some has. */
+static bool wear(chain *c)
+{
+    bool wears = false;
+    for (uint32_t k = 0; k < c->count; k++)
+        if (!c->worn[k] && fabs(c->grout_trial[k]) > c->bond[k]) {
+            c->worn[k] = true;
+            c->grout[k] = within(c->grout_trial[k], c->residual[k]);
+            wears = wears || c->residual[k] < c->bond[k];
+        }
+    return wears;
+}
+
+/* Whether the steel is in equilibrium; fills `off`. */
+static bool is_balanced(chain *c)
+{
+    double most = fabs(c->pull) + c->plate, off = 0, before = -c->plate - c->pull;
+    double stiffest = c->plate_stiff, moved = fabs(c->seat);
+    for (uint32_t k = 0; k < c->count; k++) {
+        const double after = k + 1 < c->count ? c->tension[k] : 0;
+        c->off[k] = after + before - c->grout[k];
+        before = -after;
+        off = larger(off, fabs(c->off[k]));
+        most = larger(most, larger(fabs(after), fabs(c->grout[k])));
+        stiffest = larger(stiffest, larger(c->hold[k], k + 1 < c->count ? c->stiff[k] : 0));
+        moved = larger(moved, larger(fabs(c->w[k]), fabs(c->rock[k])));
+        moved = larger(moved, fabs(c->slip[k]));
+    }
+    return off <= BALANCED * most + ROUNDED * stiffest * moved;
+}
+
+/* The step of w of a Newton pass: elimination down the three bands, and back. */
+static void find_step(const chain *c, double *step)
+{
+    double over[TL_ELEMENT_NODES], inverse[TL_ELEMENT_NODES]; /* upper band over the pivot, 1 over the pivot */
+    double before = 0, part = 0, alone = 1, carried = 0;
+    const uint32_t n = c->count;
+    for (uint32_t k = 0; k < n; k++) {
+        const double after = k + 1 < n ? c->tension_tangent[k] : 0;
+        /* what is left of the segment before when all nodes before it are eliminated */
+        const double own = c->grout_tangent[k] + (k == 0 ? c->plate_tangent : 0) + before * alone;
+        const double pivot = own + after;
+        inverse[k] = pivot > 0 ? 1 / pivot : 0;
+        carried = c->off[k] + part * carried;
+        step[k] = carried * inverse[k];
+        part = over[k] = after * inverse[k];
+        alone = own * inverse[k];
+        before = after;
+    }
+    for (uint32_t k = n - 1; k-- > 0;)
+        step[k] += over[k] * step[k + 1];
+}
+
+/* Goes a part of a step on from `from`. Gives the unbalance along the step, J, which falls to 0 at the best part. */
+static double go(chain *c, const double *from, const double *step, double part, bool *balanced)
+{
+    double sum = 0;
+    for (uint32_t k = 0; k < c->count; k++)
+        c->w[k] = from[k] + part * step[k];
+    respond(c, false);
+    *balanced = is_balanced(c);
+    for (uint32_t k = 0; k < c->count; k++)
+        sum += c->off[k] * step[k];
+    return sum;
+}
+
+/* A Newton pass. Where it goes too far, beyond where the energy along the step is least, it goes back. */
+static bool advance(chain *c)
+{
+    double step[TL_ELEMENT_NODES], from[TL_ELEMENT_NODES], least = 0, most = 1;
+    bool balanced;
+    find_step(c, step);
+    memcpy(from, c->w, c->count * sizeof *from);
+    const double begin = go(c, from, step, 0, &balanced);
+    double low = begin, high = go(c, from, step, 1, &balanced);
+    for (int k = 0; k < SEARCH && high < -OVERSHOT * begin && !balanced; k++) {
+        const double part = k % 3 == 2 ? 0.5 * (least + most) : least + (most - least) * low / (low - high);
+        const double at = go(c, from, step, part, &balanced);
+        if (fabs(at) <= OVERSHOT * begin)
+            break;
+        *(at > 0 ? &least : &most) = part;
+        *(at > 0 ? &low : &high) = at;
+    }
+    return balanced;
+}
+
+/* ---------------------------------------------------------------- direct ----------------- */
+
+typedef struct knot {
+    double w, n; /* m, N */
+} knot;
+
+/* L_k: constant before its first knot and after its last. */
+typedef struct curve {
+    uint32_t count;
+    double level; /* N, where it has no knots */
+    knot at[2 * TL_ELEMENT_NODES + 4];
+} curve;
+
+static double curve_at(const curve *f, double w)
+{
+    if (f->count == 0)
+        return f->level;
+    uint32_t i = 0;
+    while (i < f->count && f->at[i].w < w)
+        i++;
+    if (i == 0 || i == f->count)
+        return f->at[i ? i - 1 : 0].n;
+    const knot a = f->at[i - 1], b = f->at[i];
+    return a.n + (b.n - a.n) * (w - a.w) / (b.w - a.w);
+}
+
+/* Where it reaches n, from below (`rises`: the first place) or from above (the last). */
+static double place_of(const curve *f, double n, bool rises)
+{
+    uint32_t i = 0;
+    while (i < f->count && (rises ? f->at[i].n < n : f->at[i].n <= n))
+        i++;
+    if (f->count == 0 || i == 0)
+        return -INFINITY;
+    if (i == f->count)
+        return INFINITY;
+    const knot a = f->at[i - 1], b = f->at[i];
+    return a.w + (n - a.n) * (b.w - a.w) / (b.n - a.n);
+}
+
+/* A spring that bears nothing at w and from `least` to `most`. */
+typedef struct holder {
+    double w, stiff, least, most;
+} holder;
+
+static double force_of(const holder *h, double w)
+{
+    return larger(h->least, smaller(h->most, h->stiff * (w - h->w)));
+}
+
+static void put_knot(curve *f, double w)
+{
+    const double n = curve_at(f, w);
+    uint32_t i = f->count++;
+    for (; i > 0 && f->at[i - 1].w > w; i--)
+        f->at[i] = f->at[i - 1];
+    f->at[i] = (knot){w, n};
+}
+
+static void add_holder(curve *f, holder h)
+{
+    if (!(h.stiff > 0 && h.most > h.least))
+        return;
+    put_knot(f, h.w + h.least / h.stiff);
+    put_knot(f, h.w + h.most / h.stiff);
+    for (uint32_t i = 0; i < f->count; i++)
+        f->at[i].n += force_of(&h, f->at[i].w);
+}
+
+/* Cuts off what is beyond a limit of the tension; between which places node k must be. false: it is always beyond. */
+static bool cut_off(curve *f, double limit, double *low, double *high)
+{
+    const double first = f->count ? f->at[0].n : f->level, last = f->count ? f->at[f->count - 1].n : f->level;
+    if (first > limit || last < -limit)
+        return false;
+    *low = first < -limit ? place_of(f, -limit, true) : -INFINITY;
+    *high = last > limit ? place_of(f, limit, false) : INFINITY;
+    uint32_t kept = 0, begin = 0;
+    while (begin < f->count && f->at[begin].n < -limit)
+        begin++;
+    if (begin > 0)
+        f->at[kept++] = (knot){*low, -limit};
+    for (; begin < f->count && f->at[begin].n <= limit; begin++)
+        f->at[kept++] = f->at[begin];
+    if (last > limit)
+        f->at[kept++] = (knot){*high, limit};
+    f->count = kept;
+    return true;
+}
+
+static holder grout_of(const chain *c, uint32_t k)
+{
+    const double limit = c->worn[k] ? c->residual[k] : c->bond[k];
+    return (holder){c->rock[k] + c->slip[k], c->hold[k], -limit, limit};
+}
+
+/* Finds w with the limits as they are. */
+static bool find_directly(chain *c)
+{
+    double low[TL_ELEMENT_NODES], high[TL_ELEMENT_NODES], w[TL_ELEMENT_NODES];
+    const uint32_t n = c->count;
+    curve f;
+    f.count = 0;
+    f.level = c->pull;
+    add_holder(&f, (holder){c->rock[0] + c->seat, c->plate_stiff, 0, c->plate_limit});
+    add_holder(&f, grout_of(c, 0));
+    for (uint32_t k = 0; k + 1 < n; k++) {
+        if (!cut_off(&f, c->limit[k], &low[k], &high[k]))
+            return false;
+        for (uint32_t i = 0; i < f.count; i++)
+            f.at[i].w += f.at[i].n / c->stiff[k] + c->plastic[k];
+        add_holder(&f, grout_of(c, k + 1));
+    }
+    if (!cut_off(&f, 0, &low[n - 1], &high[n - 1]))
+        return false;
+    w[n - 1] = larger(low[n - 1], smaller(high[n - 1], c->w[n - 1]));
+    double tension = 0;
+    for (uint32_t k = n - 1; k-- > 0;) {
+        const holder h = grout_of(c, k + 1);
+        tension -= h.stiff > 0 ? force_of(&h, w[k + 1]) : 0;
+        w[k] = larger(low[k], smaller(high[k], w[k + 1] - tension / c->stiff[k] - c->plastic[k]));
+    }
+    memcpy(c->w, w, n * sizeof *w);
+    return true;
+}
+
+/* ---------------------------------------------------------------- both ------------------- */
+
+/* Newton passes until the steel is in equilibrium; false: it is not after all of them. */
+static bool pass(chain *c)
+{
+    bool balanced = is_balanced(c);
+    for (int k = 0; k < PASSES && !balanced; k++)
+        balanced = advance(c);
+    return balanced;
+}
+
+/* With the limits as they are. */
+static bool settle(chain *c)
+{
+    if (pass(c))
+        return true;
+    if (!find_directly(c))
+        return false;
+    respond(c, false);
+    pass(c); /* against rounding */
+    return true;
+}
+
+bool chain_solve(chain *c)
+{
+    respond(c, true);
+    if (!is_balanced(c)) {
+        double step[TL_ELEMENT_NODES];
+        find_step(c, step);
+        for (uint32_t k = 0; k < c->count; k++)
+            c->w[k] += step[k];
+    }
+    respond(c, false);
+    do { /* each time grout wears that was not worn */
+        if (!settle(c))
+            return false;
+    } while (wear(c));
+    return true;
+}

@@ -1,0 +1,547 @@
+/* solve.c - pressures and flows in a network of wet joints.
+ *
+ * A cell is a wet joint of area A. Its aperture is the mean over its corners, with the areas that they stand for,
+ *
+ *     w = mean of clamp(touching + opening, residual, maximum)
+ *
+ * with the opening of the walls, below 0 where they overlap, and the aperture `touching` where they just touch. The
+ * potential is phi = p + unit_weight z, Pa. A side has the length L and the distance d from the centroid. By the cubic
+ * law (Witherspoon, Wang, Iwai and Gale 1980) there flows to it, m3/s,
+ *
+ *     q = t (phi_cell - phi_side),    t = w^3 / (12 viscosity) L / d
+ *
+ * Sides that meet have one phi, the mean with the weights t, unless a head gives it; one that meets none is closed. The
+ * pressure in a drain is 0. One of the radius r takes from a cell that it passes at the height z (Peaceman 1978)
+ *
+ *     q = 2 pi w^3 / (12 viscosity) / ln(r0 / r) (phi_cell - unit_weight z),    r0 = 0.2 sqrt(A)
+ *
+ * Steady flow: the sum over each cell is 0. Otherwise water of the bulk modulus K is stored,
+ *
+ *     w A / K d(phi)/dt + A dw/dt + sum of q = 0
+ *
+ * by one implicit step for the time since the last call; a pressure below 0 becomes 0.
+ *
+ * The equations are solved by conjugate gradients with the diagonal as preconditioner, one after the other, so the
+ * bits do not depend on threads. Unsaturated joints are not followed: one above the water conducts as if it were full,
+ * and bears no pressure. */
+#include "flow.h"
+
+#define TWO_PI (2 * 3.14159265358979323846)
+/* Tolerance: residual of the equations over that of the heads, where iterations end. Test: lua/test_flow. */
+#define CONVERGED 1e-10
+/* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
+#define MOST_ITERATIONS 20
+
+/* Limit: ratio of the radii of a drain, of which `place` refuses smaller ones: joints that are cut become smaller. */
+#define LEAST_RATIO 1.05
+
+/* A drain in a cell. */
+typedef struct hit {
+    uint32_t cell, drain;
+    double conductance, phi; /* m3/s/Pa, Pa */
+} hit;
+
+typedef struct net {
+    const flow_params *p;
+    const tl_element_batch *b;
+    size_t cells, sides, crossings;
+    uint32_t *first;          /* of the sides of a cell, [cells + 1] */
+    uint32_t *crossing;       /* of a side */
+    double *t;                /* of a side, m3/s/Pa */
+    uint32_t *head;           /* of a crossing: row of the element + 1; 0: none */
+    double *given;            /* of a crossing: its potential where it has a head, Pa */
+    double *sum, *phi;        /* of a crossing: of t; its potential in the last product */
+    double *x, *r, *way, *y;  /* of a cell: potential, Pa; residual, direction and product */
+    double *extra, *diagonal; /* of a cell: of drains and storage; of the matrix */
+    double *width;            /* of a cell, m: aperture */
+    unsigned char *closed, *open, *drained;
+    hit *drain;
+    size_t hits, hit_capacity;
+    double base; /* Pa: potentials count from it */
+    double step; /* s; 0: none */
+} net;
+
+/* ---------------------------------------------------------------- geometry --------------- */
+
+static tl_vec3 node_at(const tl_element_batch *b, uint32_t i)
+{
+    return tl_v3(b->rest[0][i] + b->u[0][i], b->rest[1][i] + b->u[1][i], b->rest[2][i] + b->u[2][i]);
+}
+
+static tl_vec3 normal_at(const tl_element_batch *b, uint32_t i)
+{
+    return tl_v3(b->normal[0][i], b->normal[1][i], b->normal[2][i]);
+}
+
+static size_t role_of(const net *n, size_t e)
+{
+    return (size_t)n->b->element_state[FLOW_ROLE][e];
+}
+
+/* A polygon as it is, halfway between its walls, in the frame x, y about its centroid. */
+typedef struct cell {
+    uint32_t node, corners;
+    tl_vec3 centroid, x, y, normal;
+    double area;
+    double xx, xy, yy; /* second moments per area */
+} cell;
+
+static tl_vec3 corner_of(const net *n, const cell *c, uint32_t i)
+{
+    const uint32_t a = c->node + i;
+    return tl_v3_scale(0.5, tl_v3_add(node_at(n->b, a), node_at(n->b, a + c->corners)));
+}
+
+static cell cell_of(const net *n, size_t e)
+{
+    const uint32_t begin = n->b->start[e];
+    cell c = {.node = begin, .corners = (n->b->start[e + 1] - begin) / 2};
+    c.normal = tl_v3_unit(tl_v3_sub(normal_at(n->b, begin), normal_at(n->b, begin + c.corners)));
+    c.x = tl_v3_perpendicular(c.normal);
+    c.y = tl_v3_cross(c.normal, c.x);
+    const tl_vec3 o = corner_of(n, &c, 0);
+    double sx = 0, sy = 0;
+    for (uint32_t i = 1; i + 1 < c.corners; i++) {
+        const tl_vec3 r = tl_v3_sub(corner_of(n, &c, i), o), s = tl_v3_sub(corner_of(n, &c, i + 1), o);
+        const double rx = tl_v3_dot(r, c.x), ry = tl_v3_dot(r, c.y), qx = tl_v3_dot(s, c.x), qy = tl_v3_dot(s, c.y);
+        const double part = 0.5 * (rx * qy - ry * qx);
+        c.area += part;
+        sx += part * (rx + qx) / 3;
+        sy += part * (ry + qy) / 3;
+        c.xx += part * (rx * rx + rx * qx + qx * qx) / 6;
+        c.xy += part * (2 * rx * ry + rx * qy + qx * ry + 2 * qx * qy) / 12;
+        c.yy += part * (ry * ry + ry * qy + qy * qy) / 6;
+    }
+    sx /= c.area;
+    sy /= c.area;
+    c.xx = c.xx / c.area - sx * sx;
+    c.xy = c.xy / c.area - sx * sy;
+    c.yy = c.yy / c.area - sy * sy;
+    c.centroid = tl_v3_madd(tl_v3_madd(o, sx, c.x), sy, c.y);
+    return c;
+}
+
+static double height_of(const net *n, const cell *c)
+{
+    return n->b->origin.z + c->centroid.z;
+}
+
+/* Side i: its vector L n, outward, and its middle from the centroid. */
+static void side_of(const net *n, const cell *c, uint32_t i, tl_vec3 *out, tl_vec3 *middle)
+{
+    const tl_vec3 a = corner_of(n, c, i), b = corner_of(n, c, i + 1 < c->corners ? i + 1 : 0);
+    *out = tl_v3_cross(tl_v3_sub(b, a), c->normal);
+    *middle = tl_v3_sub(tl_v3_scale(0.5, tl_v3_add(a, b)), c->centroid);
+}
+
+/* Mean aperture, m, and mean opening. */
+static double aperture_of(const net *n, const cell *c, double *opening)
+{
+    const tl_element_batch *b = n->b;
+    double sum = 0, area = 0, open = 0;
+    for (uint32_t i = c->node; i < c->node + c->corners; i++) {
+        double gap = 0;
+        for (int k = 0; k < 3; k++) {
+            const uint32_t j = i + c->corners;
+            gap += b->normal[k][i] * ((b->rest[k][j] - b->rest[k][i]) + (b->u[k][j] - b->u[k][i]));
+        }
+        sum += b->weight[i] * fmin(fmax(b->state[FLOW_TOUCHING][i] + gap, n->p->residual), n->p->maximum);
+        open += b->weight[i] * gap;
+        area += b->weight[i];
+    }
+    *opening = open / area;
+    return sum / area;
+}
+
+/* ---------------------------------------------------------------- the network ------------ */
+
+static bool is_joint(const net *n, size_t e)
+{
+    const tl_element_batch *b = n->b;
+    return role_of(n, e) == FLOW_JOINT && !(b->flags[e] & TL_ELEMENT_DETACHED);
+}
+
+/* Makes room. false: out of memory. */
+static bool make_room(net *n)
+{
+    double top = -1;
+    n->first = malloc((n->cells + 1) * sizeof *n->first);
+    for (size_t e = 0; n->first && e < n->cells; e++) {
+        n->first[e] = (uint32_t)n->sides;
+        const uint32_t half = is_joint(n, e) ? (n->b->start[e + 1] - n->b->start[e]) / 2 : 0;
+        for (uint32_t i = 0; i < half; i++)
+            top = fmax(top, n->b->state[FLOW_CROSSING][n->b->start[e] + i]);
+        n->sides += half;
+    }
+    if (!n->first)
+        return false;
+    n->first[n->cells] = (uint32_t)n->sides;
+    n->crossings = (size_t)(top + 1);
+    double **const of_cells[] = {&n->x, &n->r, &n->way, &n->y, &n->extra, &n->diagonal, &n->width};
+    bool enough = true;
+    for (size_t k = 0; k < sizeof of_cells / sizeof *of_cells; k++)
+        enough = (*of_cells[k] = calloc(n->cells + 1, sizeof(double))) != NULL && enough;
+    double **const of_crossings[] = {&n->sum, &n->phi, &n->given};
+    for (size_t k = 0; k < sizeof of_crossings / sizeof *of_crossings; k++)
+        enough = (*of_crossings[k] = calloc(n->crossings + 1, sizeof(double))) != NULL && enough;
+    n->crossing = calloc(n->sides + 1, sizeof *n->crossing);
+    n->t = calloc(n->sides + 1, sizeof *n->t);
+    n->head = calloc(n->crossings + 1, sizeof *n->head);
+    n->open = calloc(n->crossings + 1, 1);
+    n->closed = calloc(n->cells + 1, 1);
+    n->drained = calloc(n->cells + 1, 1);
+    return enough && n->crossing && n->t && n->head && n->open && n->closed && n->drained;
+}
+
+static void release(net *n)
+{
+    void *const owned[] = {n->first,    n->crossing, n->t,      n->head, n->given,   n->sum,
+                           n->phi,      n->x,        n->r,      n->way,  n->y,       n->extra,
+                           n->diagonal, n->width,    n->closed, n->open, n->drained, n->drain};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+}
+
+/* Adds the drains that pass a cell. false: out of memory. */
+static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
+{
+    const tl_element_batch *b = n->b;
+    tl_vec3 corner[TL_ELEMENT_NODES];
+    for (uint32_t i = 0; first_drain < n->cells && i < c->corners; i++)
+        corner[i] = corner_of(n, c, i);
+    for (size_t k = first_drain; k < n->cells; k++) {
+        double z;
+        if (role_of(n, k) != FLOW_AT_DRAIN ||
+            !flow_drain_meets(corner, c->corners, c->normal, node_at(b, b->start[k]), node_at(b, b->start[k] + 1), &z))
+            continue;
+        if (n->hits == n->hit_capacity) {
+            const size_t more = n->hits ? 2 * n->hits : 64;
+            hit *list = realloc(n->drain, more * sizeof *list);
+            if (!list)
+                return false;
+            n->drain = list;
+            n->hit_capacity = more;
+        }
+        const double ratio = FLOW_WELL_RADIUS * sqrt(c->area) / b->weight[b->start[k]], w = n->width[e];
+        const double conductance = TWO_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
+        n->drain[n->hits++] =
+            (hit){(uint32_t)e, (uint32_t)k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
+        n->drained[e] = 1;
+    }
+    return true;
+}
+
+/* The first element that is a drain; `cells`: there is none. */
+static size_t find_drains(const net *n)
+{
+    size_t k = 0;
+    while (k < n->cells && role_of(n, k) != FLOW_AT_DRAIN)
+        k++;
+    return k;
+}
+
+/* Gives a crossing the head of the first box that the middle of a side lies in. */
+static void take_head(net *n, tl_vec3 middle, uint32_t crossing)
+{
+    const tl_element_batch *b = n->b;
+    for (size_t k = 0; k < n->cells && role_of(n, k) == FLOW_AT_HEAD; k++)
+        if ((n->head[crossing] == 0 || n->head[crossing] > k + 1) &&
+            flow_in_box(node_at(b, b->start[k]), node_at(b, b->start[k] + 1), middle)) {
+            n->head[crossing] = (uint32_t)k + 1;
+            n->open[crossing] = 1;
+            n->given[crossing] = n->p->unit_weight * b->element_state[FLOW_HEAD][k] - n->base;
+        }
+}
+
+/* Fills in the cell of element e. false: out of memory. */
+static bool add_cell(net *n, size_t e, size_t first_drain)
+{
+    const tl_element_batch *b = n->b;
+    const cell c = cell_of(n, e);
+    double opening;
+    n->width[e] = aperture_of(n, &c, &opening);
+    b->element_state[FLOW_OPENING][e] = opening;
+    if (opening > n->p->drain_gap)
+        b->element_state[FLOW_DRY][e] = 1;
+    const bool dry = b->element_state[FLOW_DRY][e] != 0 || !(c.area > 0);
+    const double law = n->width[e] * n->width[e] * n->width[e] / (12 * n->p->viscosity);
+    for (uint32_t i = 0; i < c.corners; i++) {
+        const uint32_t side = n->first[e] + i, crossing = (uint32_t)b->state[FLOW_CROSSING][c.node + i];
+        tl_vec3 out, middle;
+        side_of(n, &c, i, &out, &middle);
+        const double length2 = tl_v3_norm2(out), distance = tl_v3_dot(out, middle);
+        n->crossing[side] = crossing;
+        n->t[side] = dry || !(distance > 0) ? 0 : law * length2 / distance;
+        n->sum[crossing] += n->t[side];
+        if (n->t[side] > 0)
+            take_head(n, tl_v3_add(b->origin, tl_v3_add(c.centroid, middle)), crossing);
+    }
+    double own = 0, area = 0;
+    for (uint32_t i = c.node; i < c.node + c.corners; i++) {
+        own += b->weight[i] * b->state[FLOW_SOURCE][i];
+        area += b->weight[i];
+    }
+    const bool made = b->element_state[FLOW_APERTURE][e] > 0;
+    const double head = b->element_state[FLOW_HEAD][e];
+    n->x[e] = (made ? n->p->unit_weight * head : n->p->unit_weight * height_of(n, &c) + own / area) - n->base;
+    n->closed[e] = dry;
+    b->element_state[FLOW_AREA][e] = c.area;
+    return dry || add_drains(n, e, &c, first_drain);
+}
+
+/* The least and largest head lie about it. */
+static double base_of(const net *n)
+{
+    for (size_t k = 0; k < n->cells; k++)
+        if (role_of(n, k) == FLOW_AT_HEAD)
+            return n->p->unit_weight * n->b->element_state[FLOW_HEAD][k];
+    return 0;
+}
+
+static bool build(net *n)
+{
+    if (!make_room(n))
+        return false;
+    n->base = base_of(n);
+    const size_t first_drain = find_drains(n);
+    bool enough = true;
+    for (size_t e = 0; e < n->cells && enough; e++)
+        if (is_joint(n, e))
+            enough = add_cell(n, e, first_drain);
+    return enough;
+}
+
+/* ---------------------------------------------------------------- the equations ---------- */
+
+/* The potentials of crossings for those of cells; where a head is, that or, with `bare`, 0. */
+static void meet(net *n, const double *x, bool bare)
+{
+    memset(n->phi, 0, n->crossings * sizeof *n->phi);
+    for (size_t e = 0; e < n->cells; e++)
+        for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++)
+            n->phi[n->crossing[k]] += n->t[k] * x[e];
+    for (size_t c = 0; c < n->crossings; c++)
+        n->phi[c] = n->head[c] ? (bare ? 0 : n->given[c]) : n->sum[c] > 0 ? n->phi[c] / n->sum[c] : 0;
+}
+
+/* y = A x. */
+static void multiply(net *n, const double *x, double *y)
+{
+    meet(n, x, true);
+    for (size_t e = 0; e < n->cells; e++) {
+        double sum = n->extra[e] * x[e];
+        for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++)
+            sum += n->t[k] * (x[e] - n->phi[n->crossing[k]]);
+        y[e] = sum;
+    }
+}
+
+/* Sum of a b / d over all cells, by partial sums that compilers may keep side by side. */
+static double scaled_product(const net *n, const double *a, const double *b)
+{
+    double part[4] = {0, 0, 0, 0};
+    for (size_t e = 0; e < n->cells; e++)
+        part[e % 4] += n->diagonal[e] > 0 ? a[e] * b[e] / n->diagonal[e] : 0;
+    return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+static double product(const net *n, const double *a, const double *b)
+{
+    double part[4] = {0, 0, 0, 0};
+    for (size_t e = 0; e < n->cells; e++)
+        part[e % 4] += a[e] * b[e];
+    return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+/* Fills the diagonal, and the right side into r. */
+static void set_up(net *n)
+{
+    for (size_t k = 0; k < n->hits; k++) {
+        n->extra[n->drain[k].cell] += n->drain[k].conductance;
+        n->r[n->drain[k].cell] += n->drain[k].conductance * n->drain[k].phi;
+    }
+    for (size_t e = 0; e < n->cells; e++) {
+        if (!is_joint(n, e) || n->closed[e])
+            continue;
+        const double area = n->b->element_state[FLOW_AREA][e], had = n->b->element_state[FLOW_APERTURE][e];
+        if (n->step > 0) {
+            const double store = n->width[e] * area / (n->p->bulk * n->step);
+            n->extra[e] += store;
+            n->r[e] += store * n->x[e] - (had > 0 ? (n->width[e] - had) * area / n->step : 0);
+        }
+        double diagonal = n->extra[e];
+        for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
+            const uint32_t c = n->crossing[k];
+            diagonal += n->head[c] ? n->t[k] : n->t[k] * (1 - n->t[k] / n->sum[c]);
+            n->r[e] += n->head[c] ? n->t[k] * n->given[c] : 0;
+        }
+        n->diagonal[e] = diagonal;
+    }
+}
+
+/* Cells that take no part: dry ones, and closed networks in steady flow. Nothing flows there. */
+static void still(net *n)
+{
+    for (size_t e = 0; e < n->cells; e++)
+        for (uint32_t k = n->first[e]; n->closed[e] && k < n->first[e + 1]; k++) {
+            n->sum[n->crossing[k]] -= n->t[k];
+            n->t[k] = 0;
+        }
+    for (size_t c = 0; c < n->crossings; c++)
+        n->sum[c] = 0;
+    for (size_t k = 0; k < n->sides; k++)
+        n->sum[n->crossing[k]] += n->t[k];
+}
+
+/* Conjugate gradients. false: they do not converge. */
+static bool iterate(net *n)
+{
+    const double wanted = scaled_product(n, n->r, n->r);
+    multiply(n, n->x, n->y);
+    for (size_t e = 0; e < n->cells; e++)
+        n->r[e] = n->diagonal[e] > 0 ? n->r[e] - n->y[e] : 0;
+    double now = scaled_product(n, n->r, n->r);
+    const double end = CONVERGED * CONVERGED * fmax(wanted, now), most = MOST_ITERATIONS * (double)n->cells + 1000;
+    for (size_t e = 0; e < n->cells; e++)
+        n->way[e] = n->diagonal[e] > 0 ? n->r[e] / n->diagonal[e] : 0;
+    for (double i = 0; now > end; i++) {
+        if (!(i < most))
+            return false;
+        multiply(n, n->way, n->y);
+        const double part = now / product(n, n->way, n->y);
+        for (size_t e = 0; e < n->cells; e++) {
+            n->x[e] += part * n->way[e];
+            n->r[e] -= part * n->y[e];
+        }
+        const double next = scaled_product(n, n->r, n->r), again = next / now;
+        for (size_t e = 0; e < n->cells; e++)
+            n->way[e] = (n->diagonal[e] > 0 ? n->r[e] / n->diagonal[e] : 0) + again * n->way[e];
+        now = next;
+    }
+    return isfinite(now);
+}
+
+/* ---------------------------------------------------------------- what comes of it ------- */
+
+/* Gives the nodes of a cell its pressures: linear, with the gradient that the sides have on the mean. What each corner
+ * is to bear has the force and the moments of that, since its weight stands for a third of triangles: second moments
+ * of the corners are larger than those of the polygon. */
+static void give_pressures(net *n, size_t e)
+{
+    const tl_element_batch *b = n->b;
+    const cell c = cell_of(n, e);
+    const double p = n->x[e] + n->base - n->p->unit_weight * height_of(n, &c);
+    tl_vec3 slope = {0, 0, 0};
+    double vx = 0, vxy = 0, vy = 0, area = 0;
+    for (uint32_t i = 0; i < c.corners; i++) {
+        const uint32_t side = n->first[e] + i;
+        tl_vec3 out, middle;
+        side_of(n, &c, i, &out, &middle);
+        if (n->t[side] > 0)
+            slope = tl_v3_madd(slope, (n->phi[n->crossing[side]] - n->x[e]) / c.area, out);
+        const tl_vec3 d = tl_v3_sub(corner_of(n, &c, i), c.centroid);
+        const double x = tl_v3_dot(d, c.x), y = tl_v3_dot(d, c.y), w = b->weight[c.node + i];
+        vx += w * x * x;
+        vxy += w * x * y;
+        vy += w * y * y;
+        area += w;
+    }
+    slope.z -= n->p->unit_weight;
+    const double gx = tl_v3_dot(slope, c.x), gy = tl_v3_dot(slope, c.y);
+    const double hx = c.xx * gx + c.xy * gy, hy = c.xy * gx + c.yy * gy, det = (vx * vy - vxy * vxy) / area;
+    const double fx = det > 0 ? (vy * hx - vxy * hy) / det : 0, fy = det > 0 ? (vx * hy - vxy * hx) / det : 0;
+    for (uint32_t i = 0; i < 2 * c.corners; i++) {
+        const tl_vec3 d = tl_v3_sub(corner_of(n, &c, i % c.corners), c.centroid);
+        const double x = tl_v3_dot(d, c.x), y = tl_v3_dot(d, c.y);
+        b->state[FLOW_PRESSURE][c.node + i] = fmax(0, p + gx * x + gy * y);
+        b->state[FLOW_SOURCE][c.node + i] = fmax(0, p + fx * x + fy * y);
+    }
+}
+
+/* Flows of cells, heads and drains. */
+static void give_flows(net *n)
+{
+    double *const flow = n->b->element_state[FLOW_FLOW];
+    for (size_t e = 0; e < n->cells; e++)
+        flow[e] = 0;
+    for (size_t e = 0; e < n->cells; e++)
+        for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
+            const uint32_t c = n->crossing[k];
+            const double q = n->t[k] * (n->x[e] - n->phi[c]);
+            flow[e] += 0.5 * fabs(q);
+            if (n->head[c] && n->t[k] > 0)
+                flow[n->head[c] - 1] -= q;
+        }
+    for (size_t k = 0; k < n->hits; k++) {
+        const hit *h = &n->drain[k];
+        const double q = n->closed[h->cell] ? 0 : h->conductance * (n->x[h->cell] - h->phi);
+        flow[h->cell] += 0.5 * fabs(q);
+        flow[h->drain] -= q;
+    }
+}
+
+static void give_all(net *n)
+{
+    const tl_element_batch *b = n->b;
+    meet(n, n->x, false);
+    give_flows(n);
+    for (size_t e = 0; e < n->cells; e++) {
+        b->element_state[FLOW_TIME][e] = b->time;
+        if (!is_joint(n, e))
+            continue;
+        b->element_state[FLOW_APERTURE][e] = n->width[e];
+        b->element_state[FLOW_HEAD][e] = (n->x[e] + n->base) / n->p->unit_weight;
+        b->element_state[FLOW_CLOSED][e] = n->closed[e];
+        give_pressures(n, e);
+    }
+}
+
+static TL_PRINTF(3, 4) tl_status refuse(tl_report *report, tl_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    tl_text_vprint(report->text, sizeof report->text, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+/* Time since the last call, s. */
+static double step_of(const tl_element_batch *b)
+{
+    double last = -1;
+    for (uint32_t e = 0; e < b->count; e++)
+        last = fmax(last, b->element_state[FLOW_TIME][e]);
+    return last < 0 ? 0 : b->time - last;
+}
+
+static tl_status solve(net *n, tl_report *report)
+{
+    if (!build(n))
+        return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
+    n->step = n->p->steady ? 0 : step_of(n->b);
+    if (n->p->steady &&
+        !flow_find_closed(n->cells, n->first, n->crossing, n->crossings, n->open, n->drained, n->closed))
+        return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
+    still(n);
+    set_up(n);
+    if ((n->p->steady || n->step > 0) && !iterate(n))
+        return refuse(report, TL_E_NUMERIC,
+                      "the flow does not converge in %d iterations for each of %u joints: bring residual and "
+                      "maximum, %g and %g m, nearer to each other",
+                      MOST_ITERATIONS, n->b->count, n->p->residual, n->p->maximum);
+    for (size_t e = 0; e < n->cells; e++)
+        if (n->step > 0 && is_joint(n, e)) {
+            const cell c = cell_of(n, e);
+            n->x[e] = fmax(n->x[e], n->p->unit_weight * height_of(n, &c) - n->base);
+        }
+    give_all(n);
+    return TL_OK;
+}
+
+tl_status flow_solve(const void *self, const tl_element_batch *batch, tl_report *report)
+{
+    net n = {.p = self, .b = batch, .cells = batch->count};
+    const tl_status status = solve(&n, report);
+    release(&n);
+    return status;
+}
