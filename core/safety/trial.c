@@ -6,19 +6,23 @@
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
- * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What is
- * not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter,
- * or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may. What
- * elements hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of
- * their force would bear what drives it after CAUGHT of its radius.
+ * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What
+ * is not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become
+ * shorter, or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
+ * What elements hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise
+ * of their force would bear what drives it after CAUGHT of its radius.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
  * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
  * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
  * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
- * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
- * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone far. While joints settle and
+ * blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
+ *
+ * Where contacts chatter, forces need thousands of steps to balance while nothing moves. So a trial also rests in which
+ * no body has moved by STILL u in STILLS looks in a row. A body whose unbalanced force is e of its weight goes by
+ * e / 2 (w t)^2 u in a time t, with its frequency w. Less than STILL u in a look means an e below RESTS.
  *
  * What fails and is smaller than least_volume is deleted in the copy, and the trial goes on with the rest.
  *
@@ -54,8 +58,13 @@
 #define RESTS 1e-4
 /* Tolerance: local unbalanced force ratio above which a model that moves is not at rest. */
 #define MOVES 1e-2
-/* Tolerance: way over u from which on a body is watched, and from which on it fails anyway. */
+/* Tolerance: way over u from which on a body is watched. */
 #define SUSPECT 10.0
+/* Tolerance: way over u, or if less over the radius of the largest body, from which on a relaxation's verdict counts.
+ * In cut rock blocks have slipped by 15 u, a hundredth of their size, and stood still. */
+#define CERTAIN 30.0
+#define CERTAIN_SIZE 0.05
+/* Tolerance: way over u from which on a body fails anyway. */
 #define FAR 300.0
 /* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
 #define SLIPS 1.0
@@ -70,6 +79,9 @@
 #define CAUGHT 0.03
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
+/* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests. */
+#define STILL 0.005
+#define STILLS 4
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
 #define STEPS_A_BLOCK 16
 /* Tolerance: speed over that of the fastest body that fails, and way likewise, from which on another goes with it. */
@@ -308,6 +320,7 @@ typedef struct look {
     tl_vec3 start, last; /* displacements */
     tl_quat turned;      /* when it began */
     double way;          /* between the last two looks, m */
+    double corner;       /* how far its corners had gone by rotation at the last look, m */
     int32_t grows;       /* looks in a row in which it did not become slower */
     tl_vec3 pulled;      /* force of elements at the last look, N */
     tl_vec3 from;        /* displacement when elements tightened last, or at the start */
@@ -315,9 +328,11 @@ typedef struct look {
 
 typedef struct watch {
     const tl_trials *t;
-    look *look;     /* [bodies] */
-    tl_vec3 *pull;  /* [bodies], force of elements now, N */
-    int64_t looked; /* cycle of the last look */
+    look *look;       /* [bodies] */
+    tl_vec3 *pull;    /* [bodies], force of elements now, N */
+    int64_t looked;   /* cycle of the last look */
+    int32_t still;    /* looks in a row in which all bodies stood still */
+    bool rigid_trial; /* of a trial, not of a first copy, and no block deforms */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     bool strained; /* ... for it is strained on and on */
@@ -349,11 +364,25 @@ static bool is_caught(const watch *w, const tl_model *copy, uint32_t body, tl_ve
     return driven * sqrt(way2) <= tightens * CAUGHT * copy->bodies.radius[body];
 }
 
-/* Looks at all bodies; true when some one fails. */
+/* How far the corners of a body have gone by rotation, m. */
+static double turned_of(const tl_model *m, const look *l, uint32_t body)
+{
+    const tl_quat by = tl_q_mul(m->bodies.q[body], tl_q_conj(l->turned));
+    return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
+}
+
+/* Whether all bodies have stood still in so many looks. */
+static bool stands_still(const watch *w)
+{
+    return w->rigid_trial && w->still >= STILLS;
+}
+
+/* Looks at all bodies; true when some one fails, or all stand still. */
 static bool looks(void *user, tl_model *copy)
 {
     watch *w = user;
     const double settles = w->t->settles;
+    bool still = true;
     w->looked = copy->cycles;
     tl_elements_pull(copy, w->pull);
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++) {
@@ -367,6 +396,9 @@ static bool looks(void *user, tl_model *copy)
         l->grows = grows && !caught ? l->grows + 1 : 0;
         l->last = u;
         l->way = way;
+        const double corner = turned_of(copy, l, body);
+        still = still && way + fabs(corner - l->corner) <= STILL * settles;
+        l->corner = corner;
         l->pulled = w->pull[body];
         if (caught)
             l->from = u;
@@ -376,7 +408,8 @@ static bool looks(void *user, tl_model *copy)
             w->why = l->grows >= GROWS ? "goes on" : "far";
         w->fails = true;
     }
-    return w->fails;
+    w->still = still ? w->still + 1 : 0;
+    return w->fails || stands_still(w);
 }
 
 static void watch_end(watch *w)
@@ -407,13 +440,6 @@ static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
                                .turned = copy->bodies.q[body],
                                .pulled = w->pull[body]};
     return true;
-}
-
-/* How far the corners of a body have gone by rotation, m. */
-static double turned_of(const tl_model *m, const look *l, uint32_t body)
-{
-    const tl_quat by = tl_q_mul(m->bodies.q[body], tl_q_conj(l->turned));
-    return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
 }
 
 static double gone_of(const watch *w, const tl_model *m, uint32_t body)
@@ -500,14 +526,23 @@ static double settles_now(const tl_model *copy)
     return settles;
 }
 
+static double largest_radius(const tl_model *m)
+{
+    double largest = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        largest = fmax(largest, tl_body_is_free(m, body) ? m->bodies.radius[body] : 0);
+    return largest;
+}
+
 /* Whether the verdict of a relaxation is more than the settling of its joints. */
 static bool confirmed(const watch *w, const tl_model *copy, tl_id failing)
 {
     const double settles = w->t->measured ? w->t->settles : settles_now(copy);
+    const double least = fmax(SUSPECT * settles, fmin(CERTAIN * settles, CERTAIN_SIZE * largest_radius(copy)));
     bool far = copy->cycle->fails_strained;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         if (copy->bodies.id[body] == failing)
-            far = far || gone_of(w, copy, body) > SUSPECT * settles;
+            far = far || gone_of(w, copy, body) > least;
     return far;
 }
 
@@ -529,6 +564,7 @@ static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
         return status;
     if (!watch_begin(&next, w->t, copy))
         return tl_fail_memory(&w->t->asked->error);
+    next.rigid_trial = w->rigid_trial;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         for (size_t row = 0; row < before; row++)
             if (old[row].body == next.look[body].body)
@@ -545,7 +581,7 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
     const tl_trials *t = w->t;
     const tl_solve_reason reason = r->run.reason;
     const bool left = trial->cycles < t->options.max_cycles;
-    trial->holds = reason == TL_SOLVE_REST;
+    trial->holds = reason == TL_SOLVE_REST || (!w->fails && stands_still(w));
     if (reason == TL_SOLVE_OVERLAP)
         return tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r->message,
                        tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
@@ -575,6 +611,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
+    w.rigid_trial = !leaps && !tl_model_deforms(copy);
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
         tl_relax_result r;
@@ -641,15 +678,6 @@ tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
     return status;
 }
 
-/* Before the first rest only the size of bodies says what is far. */
-static double first_scale(const tl_model *m)
-{
-    double largest = 0;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        largest = fmax(largest, tl_body_is_free(m, body) ? m->bodies.radius[body] : 0);
-    return largest / SUSPECT;
-}
-
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall)
 {
     *t = (tl_trials){.what = what, .asked = m, .stiffness = 1, .began = tl_clock()};
@@ -676,7 +704,7 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
         return status;
     tl_safety_trial trial;
     t->window = 100;
-    t->settles = first_scale(t->base);
+    t->settles = largest_radius(t->base) / SUSPECT; /* before the first rest only the size of bodies says what is far */
     status = settle(t, t->base, true, &trial, fall);
     return status == TL_OK && trial.holds ? measure(t, trial.cycles) : status;
 }
