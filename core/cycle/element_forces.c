@@ -134,17 +134,18 @@ tl_status tl_elements_weaken(tl_model *m, const tl_model *from, double factor)
 
 double tl_elements_settlement(const tl_model *m)
 {
-    const tl_node_table *n = m->elements ? &m->elements->nodes : NULL;
-    tl_addends forces = {.count = 0}, gives = {.count = 0};
-    for (uint32_t row = 0; n && row < n->table.rows; row++) {
-        const double force = tl_v3_norm(tl_v3(n->force[0][row], n->force[1][row], n->force[2][row]));
-        if (!(n->k[row] > 0) || !(force > 0))
+    const struct tl_elements *e = m->elements;
+    tl_addends forces = {.count = 0}, stored = {.count = 0};
+    for (size_t row = 0; e && row < e->table.table.rows; row++) {
+        const uint32_t first = e->table.node_begin[row], end = first + e->table.node_count[row];
+        if (!(e->table.stored[row] > 0))
             continue;
-        tl_addends_put(&forces, force);
-        tl_addends_put(&gives, force * force / n->k[row]);
+        tl_addends_put(&stored, e->table.stored[row]);
+        for (uint32_t k = first; k < end; k++)
+            tl_addends_put(&forces, tl_v3_norm(tl_columns_get(e->nodes.force, k)));
     }
     const double force = tl_addends_sum(&forces);
-    return force > 0 ? tl_addends_sum(&gives) / force : 0;
+    return force > 0 ? 4 * tl_addends_sum(&stored) / force : 0;
 }
 
 bool tl_elements_have_strength(const tl_model *m)
