@@ -86,8 +86,6 @@
 #define STEPS_A_BLOCK 16
 /* Tolerance: speed over that of the fastest body that fails, and way likewise, from which on another goes with it. */
 #define ALONG 0.3
-/* Tolerance: settlement of joints over that of elements below which elements bear all. */
-#define HANGS 1e-3
 /* Tolerance: sum of contact forces over the weight below which nothing bears a body. */
 #define BARE 0.01
 
@@ -518,18 +516,11 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
     return TL_OK;
 }
 
-/* How far joints settle by what they bear now, m; where elements bear all, how far these give. */
-static double settlement_of(const tl_watch *w, const tl_model *copy)
-{
-    const double joints = tl_watch_settlement(w, copy), elements = tl_elements_settlement(copy);
-    return joints > HANGS * elements ? joints : elements;
-}
-
 /* How far the joints of a copy settle, m, by what they bear now. */
 static double settles_now(const tl_model *copy)
 {
     tl_watch *w = tl_watch_begin(copy);
-    const double settles = w ? settlement_of(w, copy) : 0;
+    const double settles = w ? tl_watch_settlement(w, copy) + tl_elements_settlement(copy) : 0;
     if (w)
         tl_watch_end(w);
     return settles;
@@ -658,7 +649,7 @@ static tl_status measure(tl_trials *t, int64_t settled)
         return tl_fail_memory(&t->asked->error);
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
-    t->settles = settlement_of(w, t->base);
+    t->settles = tl_watch_settlement(w, t->base) + tl_elements_settlement(t->base);
     t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
