@@ -332,7 +332,7 @@ typedef struct watch {
     tl_vec3 *pull;    /* [bodies], force of elements now, N */
     int64_t looked;   /* cycle of the last look */
     int32_t still;    /* looks in a row in which all bodies stood still */
-    bool rigid_trial; /* of a trial, not of a first copy, and no block deforms */
+    bool rigid_trial; /* of a trial, not of a first copy, and only joints give */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     bool strained; /* ... for it is strained on and on */
@@ -611,7 +611,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
-    w.rigid_trial = !leaps && !tl_model_deforms(copy);
+    w.rigid_trial = !leaps && !tl_model_deforms(copy) && !copy->elements;
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
         tl_relax_result r;
