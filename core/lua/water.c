@@ -172,7 +172,9 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .usage =
          "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
          "{\"J1\"}})  or  model:water(\"field\", {pressure = function(x, y, z) return 9810 * z end})  or  "
-         "model:water(\"none\")  or  model:water(\"flow\", {aperture = 2e-4, heads = {{inside = BOX, head = 20}}})",
+         "model:water(\"none\")  or  model:water(\"flow\", {aperture = 2e-4, heads = {{inside = {min = {-2, -2, -2}, "
+         "max = "
+         "{2, 2, 2}}, head = 20}}})",
      .doc =
          "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
          "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "

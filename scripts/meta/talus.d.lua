@@ -2043,7 +2043,7 @@ function Model:elements(options) end
 
 --- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. Of "flow" pressures are found by the cubic law, between heads and drains, with apertures that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
 ---
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")  or  model:water("flow", {aperture = 2e-4, heads = {{inside = BOX, head = 20}}})
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")  or  model:water("flow", {aperture = 2e-4, heads = {{inside = {min = {-2, -2, -2}, max = {2, 2, 2}}, head = 20}}})
 ---@param name string
 ---@param options? talus.WaterOptions
 ---@return talus.Elements
