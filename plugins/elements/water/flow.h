@@ -20,17 +20,7 @@ extern const tl_element_ops flow_ops;
 /* States of a node. A corner of the first wall is where a side of the polygon begins: it bears the side's crossing. */
 enum { FLOW_PRESSURE, FLOW_SOURCE, FLOW_TOUCHING, FLOW_CROSSING };
 /* States of the whole. */
-enum {
-    FLOW_AREA,
-    FLOW_OPENING,
-    FLOW_DRY,
-    FLOW_APERTURE,
-    FLOW_FLOW,
-    FLOW_HEAD,
-    FLOW_ROLE,
-    FLOW_CLOSED,
-    FLOW_TIME
-};
+enum { FLOW_AREA, FLOW_OPENING, FLOW_DRY, FLOW_APERTURE, FLOW_FLOW, FLOW_HEAD, FLOW_ROLE, FLOW_CLOSED, FLOW_TIME };
 /* What an element is. A head has two nodes, the corners of its box; a drain the ends of its line, with its radius as
  * their weight. */
 enum { FLOW_JOINT, FLOW_AT_HEAD, FLOW_AT_DRAIN };
