@@ -98,7 +98,7 @@ TEST(what_is_no_command_is_refused)
     refused("{\"op\":\"cut\",\"joint\":\"J\",\"dip\":9,\"dip_direction\":1,\"origin\":[0,0]}", "',' is missing");
     refused("{\"op\":\"cut\",\"joint\":\"J\",\"dip\":nan,\"dip_direction\":1,\"origin\":[0,0,0]}",
             "dip must be a number");
-    refused("{\"op\":\"an op that is much too long\"}", "op is longer than 15 bytes");
+    refused("{\"op\":\"an op that is much too long\"}", "op is longer than 23 bytes");
 }
 
 /* Anything gives a command of the list or a sentence, and reads no byte behind the end: the sanitizers look on. */
