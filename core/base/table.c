@@ -68,6 +68,8 @@ bool tl_fit(void *slot, size_t *capacity, size_t need, size_t size)
     data = realloc(data, need * size);
     if (!data)
         return false;
+    /* what a save or a digest takes of it, gaps in rows included, is the same in every run */
+    memset((char *)data + *capacity * size, 0, (need - *capacity) * size);
     memcpy(slot, &data, sizeof data);
     *capacity = need;
     return true;

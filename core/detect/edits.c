@@ -53,8 +53,8 @@ static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     *scratch = (rows_scratch){.row = malloc((d->known_block_count + 1) * sizeof *scratch->row),
                               .part = malloc((d->known_block_count + 1) * sizeof *scratch->part),
-                              .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
-                              .touched = malloc(bodies + 1),
+                              .odometer_0 = calloc(bodies + 1, sizeof *scratch->odometer_0),
+                              .touched = calloc(bodies + 1, 1),
                               .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
     return scratch->row && scratch->part && scratch->odometer_0 && scratch->touched && scratch->known_blocks &&
            tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&

@@ -4,7 +4,7 @@
     TALUS_MODULE_DIR=BUILD_FOLDER tests/python/test_save.py [KILLS]
 
 A process that is killed while it saves leaves the last model that was saved whole, which goes on as the one that was not killed:
-KILLS times, at random moments (default 8; ./bootstrap soak: 200). So does a run under `talus run --autosave` that is killed and resumed, with its histories. A law's plugin that is missing, or there in another version, is named in one sentence."""
+KILLS times, at random moments (default 8; ./bootstrap soak: 200). So does a run under `talus run --autosave` that is killed and resumed, with its histories. A law's plugin that is missing, or there in another version, is named in one sentence. Files of one script have the same bytes in every run."""
 import ctypes
 import os
 import pathlib
@@ -169,6 +169,40 @@ def check_plugins(program, build, folder):
         faults.append(f"another version: {done.returncode} {done.stdout}{done.stderr}")
 
 
+# Zones, water, bolts, a relaxation and a cut: most of what files have.
+RICH = """
+local model = talus.model { gravity = {0, 0, -10}, threads = 2 }
+model:generate("box", { min = {0, 0, 0}, max = {4, 1, 4}, density = 2500 })
+model:generate("jointset", { joint = "A", dip = 20, dip_direction = 90, spacing = 1, origin = {2, 0.5, 2}, number = 3 })
+model:generate("joint", { joint = "B", dip = 80, dip_direction = 95, origin = {1.5, 0.5, 2} })
+model:boundary { zmin = "fixed" }
+model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+local free = model:blocks { fixed = false }
+model:blocks { id = free[1].id }:deformable { zone = 0.5, solid = "rock" }
+model:water("table", { level = 3 })
+model:element("bolt", { from = {2, 0.5, 4}, to = {2.2, 0.5, 0.5}, diameter = 0.025 })
+model:history { name = "way", of = free, field = "displacement" }
+model:cycle(20)
+model:relax { max_cycles = 60 }
+model:generate("joint", { joint = "C", dip = 60, dip_direction = 270, origin = {3, 0.5, 2} })
+model:cycle(20)
+model:save(arg[1])
+"""
+
+
+def check_same_bytes(program, folder):
+    """Files of one script hold the same bytes, whatever lay in the memory that a process gets."""
+    first = None
+    for garbage in 0, 85, 170:
+        path = folder / f"garbage_{garbage}.talus"
+        done = run(program, RICH, path, folder=folder, MALLOC_PERTURB_=str(garbage))
+        data = path.read_bytes() if done.returncode == 0 else b""
+        if not data or (first is not None and data != first):
+            faults.append(f"with {garbage} in memory: {done.returncode} {done.stderr} {len(data)} bytes, others than before")
+        first = first or data
+
+
 def main():
     build = pathlib.Path(os.environ["TALUS_MODULE_DIR"]).resolve()
     kills = int(sys.argv[1]) if len(sys.argv) > 1 else 8
@@ -176,6 +210,7 @@ def main():
     try:
         check_kills(build / "talus", folder, kills)
         check_autosave(build / "talus", folder)
+        check_same_bytes(build / "talus", folder)
         check_unknown(build / "talus", build, folder)
         check_plugins(build / "talus", build, folder)
     finally:
