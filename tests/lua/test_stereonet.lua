@@ -47,7 +47,7 @@ end
 local TWO_DECIMALS = 0.008 / RADIUS
 
 -- The pole of dip and dip direction lies opposite to the dip, at sqrt(2) sin(dip / 2) or tan(dip / 2).
-check.equal(talus.stereonet, require "talus.stereonet")
+check.holds(talus.stereonet == require "talus.stereonet", "the module is what talus has")
 for _, projection in ipairs { "equal_area", "equal_angle" } do
     local function radius(angle)
         return projection == "equal_area" and math.sqrt(2) * math.sin(rad(angle) / 2) or math.tan(rad(angle) / 2)
