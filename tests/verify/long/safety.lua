@@ -9,9 +9,10 @@ figures.case("FS.many", "240 random wedges with friction, cohesion, loads and wa
     .. "them or, where a wedge is held by other forces than those along its line, between that and the largest factor with which "
     .. "forces balance; the same number in other units, places, attitudes, orders, on 3 threads and with 2 workers.",
     "model:keyblocks; equilibrium of a block with forces of any direction on two planes")
-for what, compare in pairs { wedges = models.compare_wedge, slopes = models.compare_slope } do
+for _, of in ipairs { { "wedges", 240, models.compare_wedge }, { "slopes", 60, models.compare_slope } } do
+    local what, number, compare = table.unpack(of)
     local wrong, first = 0, nil
-    for seed = 1, math.max(4, (what == "wedges" and 240 or 60) // SHARE) do
+    for seed = 1, math.max(4, number // SHARE) do
         local good, why = compare(seed)
         wrong = wrong + (good and 0 or 1)
         first = first or (not good and why or nil)
