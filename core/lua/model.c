@@ -64,8 +64,9 @@ static int model_damping(lua_State *L, tl_model *model)
     tl_lua_args(L, 3, lua_pushfstring(L, "damping '%s'", damping), NULL, &args);
     if (tl_lua_damps_all(damping))
         tl_lua_waves_keep(L, model, damping);
+    const tl_lua_selection *fields = tl_lua_free_fields(L, model); /* before something is changed */
     tl_lua_ok(L, model, tl_model_damping(model, damping, &args));
-    tl_lua_free_field_damp(L, model);
+    tl_lua_free_field_damp(L, model, fields);
     return 0;
 }
 

@@ -7,6 +7,7 @@
 #include "lua/quiet.h"
 
 #include "lua/convert.h"
+#include "lua/element.h"
 #include "lua/fail.h"
 #include "lua/incoming.h"
 #include "lua/living.h"
@@ -424,22 +425,26 @@ static void plan_free_field(lua_State *L, tl_model *model, const tl_lua_sides *s
     end_plan(L, model, plan);
 }
 
-void tl_lua_free_field_damp(lua_State *L, tl_model *model)
+const tl_lua_selection *tl_lua_free_fields(lua_State *L, tl_model *model)
 {
     const tl_element_filter filter = {.size = sizeof filter, .kind = FREE_FIELD};
+    tl_lua_selection *all = tl_lua_selection_push(L, &tl_lua_element_kind, TL_LUA_AT_MODEL);
     tl_id *ids = NULL;
-    size_t count = 0;
-    double alpha, beta;
-    tl_lua_ok(L, model, tl_elements_select(model, &filter, &ids, &count));
-    tl_status status = TL_OK;
-    if (count) {
-        damping_of(model, &alpha, &beta);
-        const tl_value values[] = {tl_arg_number("alpha", alpha), tl_arg_number("beta", beta)};
-        const tl_args args = {values, 2};
-        status = tl_elements_set(model, ids, count, &args);
-    }
-    free(ids);
+    const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
+    all->names = ids;
     tl_lua_ok(L, model, status);
+    return all;
+}
+
+void tl_lua_free_field_damp(lua_State *L, tl_model *model, const tl_lua_selection *fields)
+{
+    double alpha, beta;
+    if (fields->count == 0)
+        return;
+    damping_of(model, &alpha, &beta);
+    const tl_value values[] = {tl_arg_number("alpha", alpha), tl_arg_number("beta", beta)};
+    const tl_args args = {values, 2};
+    tl_lua_ok(L, model, tl_elements_set(model, fields->names, fields->count, &args));
 }
 
 /* ---------------------------------------------------------------- plans ------------------ */

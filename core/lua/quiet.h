@@ -3,6 +3,7 @@
 #define TL_LUA_QUIET_H
 
 #include "lua/front.h"
+#include "lua/item.h"
 
 #include <talus/boundary.h>
 
@@ -36,7 +37,9 @@ size_t tl_lua_quiet_plan(lua_State *L, tl_model *model, const tl_lua_sides *side
 void tl_lua_quiet_place(lua_State *L, tl_model *model, const tl_lua_quiet *plan);
 /* Whether a damping takes out vibrations of all frequencies. */
 bool tl_lua_damps_all(const char *name);
+/* Pushes the selection of free fields of the model, which is at index 1. */
+const tl_lua_selection *tl_lua_free_fields(lua_State *L, tl_model *model);
 /* Lets free fields have the damping that the model has got. */
-void tl_lua_free_field_damp(lua_State *L, tl_model *model);
+void tl_lua_free_field_damp(lua_State *L, tl_model *model, const tl_lua_selection *fields);
 
 #endif
