@@ -4,7 +4,10 @@
 #include "base/columns.h"
 #include "base/error.h"
 #include "base/strength.h"
+#include "contact/detection.h"
+#include "contact/sides.h"
 #include "cycle/cycle_data.h"
+#include "cycle/meshes.h"
 #include "cycle/undo.h"
 #include "element/act.h"
 #include "element/follow.h"
@@ -13,6 +16,7 @@
 #include "element/steady.h"
 #include "element/together.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
@@ -132,20 +136,65 @@ tl_status tl_elements_weaken(tl_model *m, const tl_model *from, double factor)
     return status;
 }
 
-double tl_elements_settlement(const tl_model *m)
+/* What bears a body: forces of elements, N, and stiffnesses of these and of joints, N/m. */
+typedef struct bearing {
+    double force, stiffness;
+} bearing;
+
+/* Adds what an element does to bodies: with E the energy that it holds, and F half of the sum of its forces, it is as
+ * stiff as F^2 / 2 E. */
+static void add_element(const tl_model *m, size_t row, bearing *of)
 {
     const struct tl_elements *e = m->elements;
-    tl_addends forces = {.count = 0}, stored = {.count = 0};
-    for (size_t row = 0; e && row < e->table.table.rows; row++) {
-        const uint32_t first = e->table.node_begin[row], end = first + e->table.node_count[row];
-        if (!(e->table.stored[row] > 0))
+    const uint32_t first = e->table.node_begin[row], end = first + e->table.node_count[row];
+    double half = 0;
+    for (uint32_t k = first; k < end; k++)
+        half += 0.5 * tl_v3_norm(tl_columns_get(e->nodes.force, k));
+    for (uint32_t k = first; k < end; k++) {
+        const double force = tl_v3_norm(tl_columns_get(e->nodes.force, k));
+        if (e->nodes.body[k] == TL_NO_ROW)
             continue;
-        tl_addends_put(&stored, e->table.stored[row]);
-        for (uint32_t k = first; k < end; k++)
-            tl_addends_put(&forces, tl_v3_norm(tl_columns_get(e->nodes.force, k)));
+        of[e->nodes.body[k]].force += force;
+        of[e->nodes.body[k]].stiffness += 0.5 * force * half / e->table.stored[row];
     }
+}
+
+static void add_contact(const tl_model *m, uint32_t contact, bearing *of)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (c->law[contact] == TL_NO_ROW || !(tl_v3_norm(c->force[contact]) > 0))
+        return;
+    const tl_sides on = tl_contact_bodies(m, contact);
+    const tl_law *law = &m->joint_laws[c->law[contact]];
+    const double stiffness = fmin(law->kn, law->ks > 0 ? law->ks : law->kn) * c->area[contact];
+    of[on.a].stiffness += stiffness;
+    of[on.b].stiffness += stiffness;
+}
+
+bool tl_elements_settlement(const tl_model *m, double *settles)
+{
+    const struct tl_elements *e = m->elements;
+    const size_t bodies = m->bodies.table.rows;
+    tl_addends forces = {.count = 0}, gives = {.count = 0};
+    bearing *of = e ? calloc(bodies + 1, sizeof *of) : NULL;
+    *settles = 0;
+    if (!of)
+        return !e;
+    for (size_t row = 0; row < e->table.table.rows; row++)
+        if (e->table.stored[row] > 0)
+            add_element(m, row, of);
+    for (uint32_t i = 0; i < m->detect->contacts.table.rows; i++)
+        add_contact(m, i, of);
+    for (uint32_t body = 0; body < bodies; body++) {
+        if (!tl_body_is_free(m, body) || !(of[body].force > 0))
+            continue;
+        tl_addends_put(&forces, of[body].force);
+        tl_addends_put(&gives, of[body].force * of[body].force / of[body].stiffness);
+    }
+    free(of);
     const double force = tl_addends_sum(&forces);
-    return force > 0 ? 4 * tl_addends_sum(&stored) / force : 0;
+    *settles = force > 0 ? tl_addends_sum(&gives) / force : 0;
+    return true;
 }
 
 bool tl_elements_have_strength(const tl_model *m)

@@ -520,7 +520,8 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 static double settles_now(const tl_model *copy)
 {
     tl_watch *w = tl_watch_begin(copy);
-    const double settles = w ? tl_watch_settlement(w, copy) + tl_elements_settlement(copy) : 0;
+    double elements;
+    const double settles = w && tl_elements_settlement(copy, &elements) ? tl_watch_settlement(w, copy) + elements : 0;
     if (w)
         tl_watch_end(w);
     return settles;
@@ -644,12 +645,13 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
 /* How far joints settle, and the steps that this takes. */
 static tl_status measure(tl_trials *t, int64_t settled)
 {
-    tl_watch *w = tl_watch_begin(t->base);
+    double elements;
+    tl_watch *w = tl_elements_settlement(t->base, &elements) ? tl_watch_begin(t->base) : NULL;
     if (!w)
         return tl_fail_memory(&t->asked->error);
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
-    t->settles = tl_watch_settlement(w, t->base) + tl_elements_settlement(t->base);
+    t->settles = tl_watch_settlement(w, t->base) + elements;
     t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
