@@ -1,5 +1,5 @@
 -- Factors of safety of random wedges and slopes: limit equilibrium where it holds, and no difference by units, place, attitude, order or
--- threads. tests/verify/long/safety.lua tries many more.
+-- threads. tests/verify/long/random_factors.lua tries many more.
 local check = require "check"
 local models = require "safety_models"
 
