@@ -111,7 +111,8 @@ static bool find_between(finder *f, lone_edge *edge)
         list[f->takes++] = (taken){f->end[i], along};
     }
     edge->count = (uint32_t)(f->takes - edge->first);
-    qsort(f->taken + edge->first, edge->count, sizeof *f->taken, by_place);
+    if (edge->count > 1)
+        qsort(f->taken + edge->first, edge->count, sizeof *f->taken, by_place);
     return true;
 }
 
