@@ -7,8 +7,9 @@
 #include "lua/item.h"
 #include "lua/living.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
-#include <talus/elements.h>
 
 /* ---------------------------------------------------------------- placing ---------------- */
 
@@ -65,6 +66,38 @@ static int model_element(lua_State *L, tl_model *model)
     return 1;
 }
 
+tl_lua_selection *tl_lua_elements_make(lua_State *L, tl_model *model, const char *kind, const tl_args *args)
+{
+    tl_lua_selection *made = tl_lua_selection_push(L, &tl_lua_element_kind, TL_LUA_AT_MODEL);
+    tl_id *ids = NULL;
+    const tl_status status = tl_model_element(model, kind, args, 1, kind, &ids, &made->count);
+    made->names = ids;
+    tl_lua_ok(L, model, status);
+    return made;
+}
+
+const double *tl_lua_ask_places(lua_State *L, int function, tl_vec3 *places, size_t first, size_t count,
+                                const tl_lua_asked *asked)
+{
+    double *held = lua_newuserdatauv(L, (4 * count + 1) * sizeof *held, 0), *number = held + 3 * count;
+    memcpy(held, places, 3 * count * sizeof *held);
+    free(places);
+    memset(number, 0, first * sizeof *number);
+    for (size_t i = first; i < count; i++) {
+        lua_pushvalue(L, function);
+        for (int k = 0; k < 3; k++)
+            lua_pushnumber(L, held[3 * i + (size_t)k]);
+        if (tl_lua_call_reading(L, lua_touserdata(L, TL_LUA_AT_MODEL), 3, 1) != LUA_OK)
+            lua_error(L);
+        number[i] = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
+        const bool enough = asked->or_equal ? number[i] >= asked->least : number[i] > asked->least;
+        if (!(enough && number[i] <= asked->most))
+            tl_lua_fail_in(L, function, "%s: it gave %s", asked->must, tl_lua_describe(L, -1));
+        lua_pop(L, 1);
+    }
+    return number;
+}
+
 /* ---------------------------------------------------------------- which ------------------ */
 
 static const tl_param element_params[] = {
@@ -94,17 +127,23 @@ static tl_id read_block(lua_State *L)
     return (tl_id)id;
 }
 
+tl_lua_selection *tl_lua_elements_push(lua_State *L, tl_model *model, const tl_element_filter *filter)
+{
+    tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_element_kind, TL_LUA_AT_MODEL);
+    tl_id *ids = NULL;
+    const tl_status status = tl_elements_select(model, filter, &ids, &found->count);
+    found->names = ids;
+    tl_lua_ok(L, model, status);
+    return found;
+}
+
 static int model_elements(lua_State *L, tl_model *model)
 {
     tl_element_filter filter = {.size = sizeof filter};
     tl_lua_read(L, 2, &elements_spec, true, &filter);
     filter.block = read_block(L);
     const int where = tl_lua_read_where(L, &tl_lua_element_kind);
-    tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
-    tl_id *ids = NULL;
-    const tl_status status = tl_elements_select(model, &filter, &ids, &found->count);
-    found->names = ids;
-    tl_lua_ok(L, model, status);
+    tl_lua_elements_push(L, model, &filter);
     if (where)
         tl_lua_selection_filter(L, lua_gettop(L), where);
     return 1;

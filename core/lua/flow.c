@@ -172,37 +172,23 @@ static double number_of(lua_State *L, int table, const tl_kind *kind, const char
 }
 
 /* Asks a function for apertures of the elements to be: a list of numbers is pushed. Heads and drains come first. */
-static double *ask_apertures(lua_State *L, tl_model *model, int table, int function, const tl_args *args)
+static const double *ask_apertures(lua_State *L, tl_model *model, int table, int function, const tl_args *args)
 {
     tl_vec3 *places;
     size_t count;
     const tl_kind *kind = tl_plugin_find(TL_KIND_ELEMENT, TL_LUA_FLOW);
     tl_lua_ok(L, model, tl_model_element_middles(model, TL_LUA_FLOW, args, 1, &places, &count));
-    double *held = lua_newuserdatauv(L, (4 * count + 1) * sizeof *held, 0), *aperture = held + 3 * count;
-    memcpy(held, places, 3 * count * sizeof *held);
-    free(places);
     size_t ends = 0;
     for (int k = 0; k < 2; k++) {
         ends += lua_getfield(L, table, k ? "drains" : "heads") == LUA_TTABLE ? lua_rawlen(L, -1) / 3 : 0;
         lua_pop(L, 1);
     }
     const double residual = number_of(L, table, kind, "residual"), maximum = number_of(L, table, kind, "maximum");
-    for (size_t i = 0; i < ends; i++)
-        aperture[i] = 0;
-    for (size_t i = ends; i < count; i++) {
-        lua_pushvalue(L, function);
-        for (int k = 0; k < 3; k++)
-            lua_pushnumber(L, held[3 * i + (size_t)k]);
-        lua_call(L, 3, 1);
-        aperture[i] = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
-        if (!(aperture[i] > residual && aperture[i] <= maximum))
-            tl_lua_fail_in(L, function,
-                           "water 'flow': aperture must give a number above residual = %f and at most maximum = %f, m: "
-                           "it gave %s",
-                           residual, maximum, tl_lua_describe(L, -1));
-        lua_pop(L, 1);
-    }
-    return aperture;
+    const tl_lua_asked asked = {
+        residual, maximum, false,
+        lua_pushfstring(L, "water 'flow': aperture must give a number above residual = %f and at most maximum = %f, m",
+                        residual, maximum)};
+    return tl_lua_ask_places(L, function, places, ends, count, &asked);
 }
 
 /* Gives the nodes of elements the apertures, in the order in which they were asked for. */
@@ -238,11 +224,7 @@ int tl_lua_flow_place(lua_State *L, tl_model *model)
     }
     tl_lua_args(L, table, "water 'flow'", NULL, &args);
     const double *aperture = type == LUA_TFUNCTION ? ask_apertures(L, model, table, function, &args) : NULL;
-    tl_lua_selection *made = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
-    tl_id *ids = NULL;
-    const tl_status status = tl_model_element(model, TL_LUA_FLOW, &args, 1, TL_LUA_FLOW, &ids, &made->count);
-    made->names = ids;
-    tl_lua_ok(L, model, status);
+    const tl_lua_selection *made = tl_lua_elements_make(L, model, TL_LUA_FLOW, &args);
     if (aperture)
         tl_lua_ok(L, model, put_apertures(model, made, aperture));
     return 1;
@@ -260,11 +242,8 @@ int tl_lua_model_flow(lua_State *L, tl_model *model)
     const tl_element_filter filter = {.size = sizeof filter, .kind = TL_LUA_FLOW};
     lua_createtable(L, 0, 4);
     const int result = lua_gettop(L);
-    tl_lua_selection *all = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
-    tl_id *ids = NULL;
-    const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
-    all->names = ids;
-    tl_lua_ok(L, model, status);
+    tl_lua_selection *all = tl_lua_elements_push(L, model, &filter);
+    tl_id *ids = all->names;
     lua_newtable(L); /* heads */
     lua_newtable(L); /* drains */
     size_t joints = 0;

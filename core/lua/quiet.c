@@ -354,15 +354,14 @@ static bool plan_quiet(lua_State *L, tl_model *model, const tl_lua_sides *sides,
 static void damping_of(const tl_model *model, double *alpha, double *beta)
 {
     const tl_plugin_setting d = tl_model_damping_now(model);
-    const double pi = 3.14159265358979323846;
     const char *name = d.kind ? d.kind->name : "none";
     *alpha = *beta = 0;
     if (strcmp(name, "rayleigh") == 0) {
         const double ratio = number_of(&d, "ratio"), from = number_of(&d, "from"), to = number_of(&d, "to");
-        *alpha = 4 * pi * ratio * from * to / (from + to);
-        *beta = ratio / (pi * (from + to));
+        *alpha = 4 * TL_PI * ratio * from * to / (from + to);
+        *beta = ratio / (TL_PI * (from + to));
     } else if (strcmp(name, "dashpot") == 0)
-        *beta = number_of(&d, "ratio") / (pi * number_of(&d, "frequency"));
+        *beta = number_of(&d, "ratio") / (TL_PI * number_of(&d, "frequency"));
     else if (strcmp(name, "viscous") == 0)
         *alpha = number_of(&d, "alpha");
 }
@@ -427,13 +426,7 @@ static void plan_free_field(lua_State *L, tl_model *model, const tl_lua_sides *s
 
 const tl_lua_selection *tl_lua_free_fields(lua_State *L, tl_model *model)
 {
-    const tl_element_filter filter = {.size = sizeof filter, .kind = FREE_FIELD};
-    tl_lua_selection *all = tl_lua_selection_push(L, &tl_lua_element_kind, TL_LUA_AT_MODEL);
-    tl_id *ids = NULL;
-    const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
-    all->names = ids;
-    tl_lua_ok(L, model, status);
-    return all;
+    return tl_lua_elements_push(L, model, &(tl_element_filter){.size = sizeof(tl_element_filter), .kind = FREE_FIELD});
 }
 
 void tl_lua_free_field_damp(lua_State *L, tl_model *model, const tl_lua_selection *fields)

@@ -8,7 +8,7 @@
 #include "lua/item.h"
 #include "lua/living.h"
 
-#include <math.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/elements.h>
@@ -53,28 +53,13 @@ static void push_parameters(lua_State *L, const char *source)
 
 /* Asks the function at index `function` for the pressures at some places: a list of them is pushed. The places are
  * those of nodes to come, so the function may only read the model. */
-static double *ask_pressures(lua_State *L, tl_model *model, int function, const tl_args *args)
+static const double *ask_pressures(lua_State *L, tl_model *model, int function, const tl_args *args)
 {
     tl_vec3 *places;
     size_t count;
     tl_lua_ok(L, model, tl_model_element_places(model, KIND, args, 1, &places, &count));
-    double *held = lua_newuserdatauv(L, (4 * count + 1) * sizeof *held, 0);
-    memcpy(held, places, 3 * count * sizeof *held);
-    free(places);
-    double *pressure = held + 3 * count;
-    for (size_t i = 0; i < count; i++) {
-        lua_pushvalue(L, function);
-        for (int k = 0; k < 3; k++)
-            lua_pushnumber(L, held[3 * i + (size_t)k]);
-        if (tl_lua_call_reading(L, lua_touserdata(L, 1), 3, 1) != LUA_OK)
-            lua_error(L);
-        pressure[i] = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
-        if (!(pressure[i] >= 0) || isinf(pressure[i]))
-            tl_lua_fail_in(L, function, "water: pressure must give a number of at least 0, Pa: it gave %s",
-                           tl_lua_describe(L, -1));
-        lua_pop(L, 1);
-    }
-    return pressure;
+    const tl_lua_asked asked = {0, DBL_MAX, true, "water: pressure must give a number of at least 0, Pa"};
+    return tl_lua_ask_places(L, function, places, 0, count, &asked);
 }
 
 /* Gives the nodes of a field their pressures, in the order in which they were asked for. */
@@ -98,12 +83,8 @@ static int drain(lua_State *L, tl_model *model)
     tl_lua_selection *all = NULL;
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         tl_element_filter filter = {.size = sizeof filter, .kind = kinds[k]};
-        all = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
-        tl_id *ids = NULL;
-        const tl_status status = tl_elements_select(model, &filter, &ids, &all->count);
-        all->names = ids;
-        tl_lua_ok(L, model, status);
-        tl_lua_ok(L, model, tl_elements_delete(model, ids, all->count));
+        all = tl_lua_elements_push(L, model, &filter);
+        tl_lua_ok(L, model, tl_elements_delete(model, all->names, all->count));
         all->count = 0;
     }
     return 1;
@@ -129,11 +110,7 @@ static int model_water(lua_State *L, tl_model *model)
     tl_args args;
     tl_lua_args(L, table, "water", NULL, &args);
     const double *pressure = field ? ask_pressures(L, model, function, &args) : NULL;
-    tl_lua_selection *made = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
-    tl_id *ids = NULL;
-    const tl_status status = tl_model_element(model, KIND, &args, 1, KIND, &ids, &made->count);
-    made->names = ids;
-    tl_lua_ok(L, model, status);
+    const tl_lua_selection *made = tl_lua_elements_make(L, model, KIND, &args);
     if (field)
         tl_lua_ok(L, model, put_pressures(model, made, pressure));
     return 1;

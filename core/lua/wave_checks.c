@@ -22,8 +22,6 @@
 #define ABOVE 0.01
 /* Limit: blocks that a wave needs. Quiet faces then send back less than 0.1 % of its energy. */
 #define BLOCKS 10.0
-/* Constant: pi. */
-#define PI 3.14159265358979323846
 
 /* ---------------------------------------------------------------- damping ---------------- */
 
@@ -120,7 +118,7 @@ static double highest(const tl_record *record)
 {
     double wave[STRETCH], power[STRETCH / 2 + 1] = {0}, all = 0, sum = 0;
     for (size_t i = 0; i < STRETCH; i++)
-        wave[i] = tl_cos(2 * PI * (double)i / STRETCH);
+        wave[i] = tl_cos(2 * TL_PI * (double)i / STRETCH);
     for (size_t first = 0; first < tl_record_count(record); first += STRETCH / 2)
         add_stretch(record, first, wave, power);
     for (size_t k = 1; k <= STRETCH / 2; k++)

@@ -35,6 +35,7 @@
 #include "base/strength.h"
 #include "cycle/cycle_data.h"
 #include "cycle/element_forces.h"
+#include "cycle/element_strength.h"
 #include "cycle/failing.h"
 #include "cycle/joint_law.h"
 #include "cycle/meshes.h"

@@ -187,6 +187,12 @@ refuse({ aperture = { ["*"] = 2e-4, V = 1e-5 } }, "aperture of 'V' = 1e-05 m mus
 check.refused(bad, function()
     bad:water("flow", given { aperture = function() return 0 end })
 end, "aperture must give a number above residual")
+check.refused(bad, function()
+    bad:water("flow", given { aperture = function()
+        bad:blocks():set { density = 1 }
+        return 2e-4
+    end })
+end, "which may read the model only")
 refuse({ joints = "Q" }, "'Q'")
 refuse({ heads = {} }, "reaches neither a head nor a drain")
 refuse({ heads = { { inside = edge(100, 0), head = 1 } } }, "head 1: no edge of a wet joint")

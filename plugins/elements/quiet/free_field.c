@@ -35,39 +35,27 @@ enum { HELD_X = 1, HELD_Y = 2, HELD_Z = 4, HELD_ALL_WAYS = 7, HELD_TURN = 8 };
 
 /* What `create` makes of the parameters. */
 typedef struct side_kind {
+    wave wave[3]; /* first: half_space.h */
     free_field_params given;
-    wave wave[3];
     bool quiet; /* the base */
 } side_kind;
-
-static void destroy(void *self)
-{
-    side_kind *k = self;
-    if (k)
-        half_space_free(k->wave);
-    free(k);
-}
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const free_field_params *p = given;
-    const bool joint = !isnan(p->kn) && !isnan(p->ks), rock = !isnan(p->p_velocity) && !isnan(p->s_velocity);
-    if (joint == rock)
-        return tl_refuse(report, "give either kn and ks of the joints, or p_velocity and s_velocity of the rock");
+    tl_status status = half_space_check(p->kn, p->ks, p->p_velocity, p->s_velocity, report);
+    if (status != TL_OK)
+        return status;
     const bool base_joint = !isnan(p->base_kn), base_rock = !isnan(p->base_p_velocity);
     if (base_joint != !isnan(p->base_ks) || base_rock != !isnan(p->base_s_velocity) || (base_joint && base_rock))
         return tl_refuse(report, "a quiet base has either base_kn and base_ks, or base_p_velocity and base_s_velocity");
-    side_kind *k = calloc(1, sizeof *k);
-    if (!k)
-        return TL_E_MEMORY;
-    k->given = *p;
-    k->quiet = base_joint || base_rock;
     const char *const input[] = {p->input_x, p->input_y, p->input_z};
-    const tl_status status = half_space_waves(k->wave, input, report);
-    if (status != TL_OK)
-        destroy(k);
-    else
-        *self = k;
+    status = half_space_create(input, sizeof(side_kind), self, report);
+    side_kind *k = *self;
+    if (k) {
+        k->given = *p;
+        k->quiet = base_joint || base_rock;
+    }
     return status;
 }
 
@@ -576,5 +564,5 @@ const tl_element_ops free_field_ops = {.size = sizeof free_field_ops,
                                        .place = place,
                                        .update = update,
                                        .stiffness = stiffness,
-                                       .destroy = destroy,
+                                       .destroy = half_space_destroy,
                                        .never_fails = 1};

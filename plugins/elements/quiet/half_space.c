@@ -42,21 +42,35 @@ static tl_status read_wave(wave *w, const char *name, const char *text, tl_repor
     return TL_OK;
 }
 
-tl_status half_space_waves(wave w[3], const char *const text[3], tl_report *report)
+void half_space_destroy(void *self)
+{
+    wave *w = self;
+    for (int k = 0; w && k < 3; k++)
+        free(w[k].sample);
+    free(self);
+}
+
+tl_status half_space_create(const char *const input[3], size_t size, void **self, tl_report *report)
 {
     static const char *const names[] = {"input_x", "input_y", "input_z"};
-    tl_status status = TL_OK;
-    for (int k = 0; k < 3; k++)
-        w[k] = (wave){.count = 0};
+    wave *w = calloc(1, size);
+    tl_status status = w ? TL_OK : TL_E_MEMORY;
     for (int k = 0; k < 3 && status == TL_OK; k++)
-        status = read_wave(&w[k], names[k], text[k], report);
+        status = read_wave(&w[k], names[k], input[k], report);
+    if (status != TL_OK) {
+        half_space_destroy(w);
+        w = NULL;
+    }
+    *self = w;
     return status;
 }
 
-void half_space_free(wave w[3])
+tl_status half_space_check(double kn, double ks, double p_velocity, double s_velocity, tl_report *report)
 {
-    for (int k = 0; k < 3; k++)
-        free(w[k].sample);
+    const bool joint = !isnan(kn) && !isnan(ks), rock = !isnan(p_velocity) && !isnan(s_velocity);
+    return joint != rock ? TL_OK
+                         : tl_refuse(report, "give either kn and ks of the joints, or p_velocity and s_velocity of the "
+                                             "rock");
 }
 
 /* Displacement of the wave at a time, m. Velocities that are quadratic between samples have it exactly. */

@@ -1,4 +1,4 @@
-/* half_space.h - what the kinds "quiet" and "free_field" share: rock that was cut off behind a face, waves that come in
+/* half_space.h - what the kinds "quiet", "free_field" and "incoming" share: rock that was cut off behind a face, waves that come in
  * through it, and points of a face. */
 #ifndef HALF_SPACE_H
 #define HALF_SPACE_H
@@ -19,9 +19,13 @@ typedef struct wave {
 
 /* Reads numbers with blanks between them; how many, or SIZE_MAX when there is something else. `to` may be NULL. */
 size_t half_space_numbers(const char *text, double *to);
-/* Reads the parameters input_x, input_y and input_z; refuses what is no wave. `w` is to be freed, then, too. */
-tl_status half_space_waves(wave w[3], const char *const text[3], tl_report *report);
-void half_space_free(wave w[3]);
+/* What `create` of a kind makes of its parameters begins with the waves. Frees such a thing. */
+void half_space_destroy(void *self);
+/* Makes one of `size` bytes, 0 behind the waves; on failure `*self` is NULL. */
+tl_status half_space_create(const char *const input[3], size_t size, void **self, tl_report *report);
+/* Refuses what has not either kn and ks, or both velocities; NaN is left out. */
+tl_status half_space_check(double kn, double ks, double p_velocity, double s_velocity, tl_report *report);
+
 /* How far the waves move in a step that ends at `time`, m. */
 tl_vec3 half_space_came(const wave w[3], double time, double dt);
 

@@ -15,31 +15,18 @@
 
 /* What `create` makes of the parameters. */
 typedef struct wave_kind {
+    wave wave[3]; /* first: half_space.h */
     incoming_params given;
-    wave wave[3];
 } wave_kind;
-
-static void destroy(void *self)
-{
-    wave_kind *k = self;
-    if (k)
-        half_space_free(k->wave);
-    free(k);
-}
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const incoming_params *p = given;
-    wave_kind *k = calloc(1, sizeof *k);
-    if (!k)
-        return TL_E_MEMORY;
-    k->given = *p;
     const char *const input[] = {p->input_x, p->input_y, p->input_z};
-    const tl_status status = half_space_waves(k->wave, input, report);
-    if (status != TL_OK)
-        destroy(k);
-    else
-        *self = k;
+    const tl_status status = half_space_create(input, sizeof(wave_kind), self, report);
+    wave_kind *k = *self;
+    if (k)
+        k->given = *p;
     return status;
 }
 
@@ -124,5 +111,5 @@ const tl_element_ops incoming_ops = {.size = sizeof incoming_ops,
                                      .place = place,
                                      .update = update,
                                      .stiffness = stiffness,
-                                     .destroy = destroy,
+                                     .destroy = half_space_destroy,
                                      .never_fails = 1};

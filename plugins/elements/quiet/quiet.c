@@ -21,36 +21,22 @@
 
 /* What `create` makes of the parameters. */
 typedef struct face_kind {
+    wave wave[3]; /* first: half_space.h */
     quiet_params given;
-    wave wave[3];
 } face_kind;
-
-static void destroy(void *self)
-{
-    face_kind *k = self;
-    if (k)
-        half_space_free(k->wave);
-    free(k);
-}
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const quiet_params *p = given;
-    const bool joint = !isnan(p->kn) && !isnan(p->ks), rock = !isnan(p->p_velocity) && !isnan(p->s_velocity);
-    if (joint == rock)
-        return tl_refuse(report, "give either kn and ks of the joints, or p_velocity and s_velocity of the rock");
-    face_kind *k = calloc(1, sizeof *k);
-    if (!k)
-        return TL_E_MEMORY;
-    k->given = *p;
-    const char *const input[] = {p->input_x, p->input_y, p->input_z};
-    const tl_status status = half_space_waves(k->wave, input, report);
-    if (status != TL_OK) {
-        destroy(k);
+    tl_status status = half_space_check(p->kn, p->ks, p->p_velocity, p->s_velocity, report);
+    if (status != TL_OK)
         return status;
-    }
-    *self = k;
-    return TL_OK;
+    const char *const input[] = {p->input_x, p->input_y, p->input_z};
+    status = half_space_create(input, sizeof(face_kind), self, report);
+    face_kind *k = *self;
+    if (k)
+        k->given = *p;
+    return status;
 }
 
 /* ---------------------------------------------------------------- placing ---------------- */
@@ -183,5 +169,5 @@ const tl_element_ops quiet_ops = {.size = sizeof quiet_ops,
                                   .place = place,
                                   .update = update,
                                   .stiffness = stiffness,
-                                  .destroy = destroy,
+                                  .destroy = half_space_destroy,
                                   .never_fails = 1};

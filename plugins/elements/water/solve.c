@@ -26,7 +26,6 @@
  * and bears no pressure. */
 #include "flow.h"
 
-#define TWO_PI (2 * 3.14159265358979323846)
 /* Tolerance: residual of the equations over that of the heads, where iterations end. Test: lua/test_flow. */
 #define CONVERGED 1e-10
 /* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
@@ -223,7 +222,8 @@ static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
             n->hit_capacity = more;
         }
         const double ratio = FLOW_WELL_RADIUS * sqrt(c->area) / b->weight[b->start[k]], w = n->width[e];
-        const double conductance = TWO_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
+        const double conductance =
+            2 * TL_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
         n->drain[n->hits++] =
             (hit){(uint32_t)e, (uint32_t)k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
         n->drained[e] = 1;

@@ -9,34 +9,34 @@
 #include <talus/kit.h>
 
 /* An edge of one face. */
-typedef struct lone_edge {
+typedef struct open_edge {
     uint32_t half;
     uint32_t first, count; /* what it takes up, of the list of `taken` */
-} lone_edge;
+} open_edge;
 
-typedef struct taken {
+typedef struct edge_vertex {
     uint32_t vertex;
     double along; /* share of the edge, from its beginning */
-} taken;
+} edge_vertex;
 
-typedef struct finder {
+typedef struct edge_search {
     const mesh *m;
     double weld;
-    lone_edge *edge;
+    open_edge *edge;
     uint32_t *end; /* vertices at the ends of these edges, by their x */
     size_t edges, ends;
-    taken *taken;
+    edge_vertex *taken;
     size_t takes, capacity;
-} finder;
+} edge_search;
 
-typedef struct placed {
+typedef struct placed_vertex {
     double x;
     uint32_t vertex;
-} placed;
+} placed_vertex;
 
 static int by_x(const void *left, const void *right)
 {
-    const placed *a = left, *b = right;
+    const placed_vertex *a = left, *b = right;
     if (a->x != b->x)
         return a->x < b->x ? -1 : 1;
     return (a->vertex > b->vertex) - (a->vertex < b->vertex);
@@ -44,22 +44,22 @@ static int by_x(const void *left, const void *right)
 
 static int by_place(const void *left, const void *right)
 {
-    const taken *a = left, *b = right;
+    const edge_vertex *a = left, *b = right;
     if (a->along != b->along)
         return a->along < b->along ? -1 : 1;
     return (a->vertex > b->vertex) - (a->vertex < b->vertex);
 }
 
-/* Lists the vertices at the ends of lone edges, each once. */
-static bool list_ends(finder *f)
+/* Lists the vertices at the ends of open edges, each once. */
+static bool list_ends(edge_search *f)
 {
     const mesh *m = f->m;
-    placed *all = malloc((2 * f->edges + 1) * sizeof *all);
+    placed_vertex *all = malloc((2 * f->edges + 1) * sizeof *all);
     f->end = malloc((2 * f->edges + 1) * sizeof *f->end);
     for (size_t i = 0; i < f->edges && all && f->end; i++) {
         const uint32_t h = f->edge[i].half, ends[2] = {m->corner[h], m->corner[mesh_next(m, h)]};
         for (int k = 0; k < 2; k++)
-            all[2 * i + (size_t)k] = (placed){m->vertex[ends[k]].x, ends[k]};
+            all[2 * i + (size_t)k] = (placed_vertex){m->vertex[ends[k]].x, ends[k]};
     }
     if (!all || !f->end) {
         free(all);
@@ -74,7 +74,7 @@ static bool list_ends(finder *f)
 }
 
 /* The first of the ends whose x is not below a value. */
-static size_t first_from(const finder *f, double x)
+static size_t first_from(const edge_search *f, double x)
 {
     size_t low = 0, high = f->ends;
     while (low < high) {
@@ -88,7 +88,7 @@ static size_t first_from(const finder *f, double x)
 }
 
 /* Lists what an edge takes up, in the order in which it runs. */
-static bool find_between(finder *f, lone_edge *edge)
+static bool find_between(edge_search *f, open_edge *edge)
 {
     const mesh *m = f->m;
     const tl_vec3 a = m->vertex[m->corner[edge->half]], b = m->vertex[m->corner[mesh_next(m, edge->half)]];
@@ -104,11 +104,11 @@ static bool find_between(finder *f, lone_edge *edge)
         if (!(along > 0 && along < 1) || tl_v3_norm2(from) <= weld2 || tl_v3_norm2(tl_v3_sub(at, b)) <= weld2 ||
             tl_v3_norm2(tl_v3_sub(from, tl_v3_scale(along, ab))) > weld2)
             continue;
-        taken *list = tl_grown(f->taken, &f->capacity, f->takes + 1, sizeof *list);
+        edge_vertex *list = tl_grown(f->taken, &f->capacity, f->takes + 1, sizeof *list);
         if (!list)
             return false;
         f->taken = list;
-        list[f->takes++] = (taken){f->end[i], along};
+        list[f->takes++] = (edge_vertex){f->end[i], along};
     }
     edge->count = (uint32_t)(f->takes - edge->first);
     if (edge->count > 1)
@@ -117,7 +117,7 @@ static bool find_between(finder *f, lone_edge *edge)
 }
 
 /* Lays the corners of all faces anew, from the last one on, with those that edges take up. */
-static void put_between(mesh *m, const finder *f)
+static void put_between(mesh *m, const edge_search *f)
 {
     size_t to = m->corners + f->takes, edge = f->edges;
     m->corners = to;
@@ -125,7 +125,7 @@ static void put_between(mesh *m, const finder *f)
         shell_face *of = &m->face[face];
         const size_t last = to;
         for (uint32_t h = of->first + of->count; h-- > of->first;) {
-            const lone_edge *e = edge > 0 && f->edge[edge - 1].half == h ? &f->edge[--edge] : NULL;
+            const open_edge *e = edge > 0 && f->edge[edge - 1].half == h ? &f->edge[--edge] : NULL;
             for (uint32_t k = e ? e->count : 0; k-- > 0;)
                 m->corner[--to] = f->taken[e->first + k].vertex;
             m->corner[--to] = m->corner[h];
@@ -137,13 +137,13 @@ static void put_between(mesh *m, const finder *f)
     }
 }
 
-bool mesh_take_between(mesh *m, const uint32_t *lone, size_t count, double weld, uint32_t *takes)
+bool mesh_take_between(mesh *m, const uint32_t *open, size_t count, double weld, uint32_t *takes)
 {
-    finder f = {.m = m, .weld = weld, .edges = count};
+    edge_search f = {.m = m, .weld = weld, .edges = count};
     f.edge = malloc((count + 1) * sizeof *f.edge);
     bool good = f.edge != NULL;
     for (size_t i = 0; i < count && good; i++)
-        f.edge[i] = (lone_edge){.half = lone[i]};
+        f.edge[i] = (open_edge){.half = open[i]};
     good = good && list_ends(&f);
     for (size_t i = 0; i < count && good; i++)
         good = find_between(&f, &f.edge[i]);

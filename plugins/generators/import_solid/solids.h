@@ -108,9 +108,9 @@ tl_status mesh_close(solids *s, uint32_t object, mesh *m, bool *taken);
 /* Makes room for so many corners. */
 bool mesh_room(mesh *m, size_t corners);
 
-/* Makes vertices that lie within `weld` of edges of one face corners of it (between.c). `lone` has such edges'
+/* Makes vertices that lie within `weld` of edges of one face corners of it (between.c). `open` has such edges'
  * half-edges, in their order. Tells how many corners it has made; false for want of memory. */
-bool mesh_take_between(mesh *m, const uint32_t *lone, size_t count, double weld, uint32_t *takes);
+bool mesh_take_between(mesh *m, const uint32_t *open, size_t count, double weld, uint32_t *takes);
 
 /* Adds the shells of the closed object as solids (sides.c). */
 tl_status sides_add(solids *s, uint32_t object, mesh *m);

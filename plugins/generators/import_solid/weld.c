@@ -318,15 +318,15 @@ static void sort_edges(mesh *m)
 static bool take_between(mesh *m, double weld, done *d)
 {
     const side *list = m->sides;
-    size_t lone = 0;
+    size_t open = 0;
     sort_edges(m);
     for (size_t from = 0, to; from < m->corners; from = to) {
         to = edge_end(m, m->corners, from);
         if (to == from + 1)
-            m->root[lone++] = list[from].half;
+            m->root[open++] = list[from].half;
     }
-    qsort(m->root, lone, sizeof *m->root, by_number);
-    return lone == 0 || mesh_take_between(m, m->root, lone, weld, &d->between);
+    qsort(m->root, open, sizeof *m->root, by_number);
+    return open == 0 || mesh_take_between(m, m->root, open, weld, &d->between);
 }
 
 /* Where two faces share an edge, they are neighbours in any case. */
