@@ -22,6 +22,9 @@
 #define STIRLING_FROM 12.0
 /* Limit: terms of the continued fraction; it needs some sqrt(n). */
 #define MOST_TERMS 100000
+/* Tolerance: change of the continued fraction by a term, relative, that rounding is as large as. Test:
+ * unit/test_draws. */
+#define LAST_TERM 1e-15
 
 /* ---------------------------------------------------------------- draws ------------------ */
 
@@ -106,7 +109,7 @@ static double beta_fraction(double a, double b, double x)
             change *= c * d;
         }
         sum *= change;
-        if (fabs(change - 1) < 1e-15)
+        if (fabs(change - 1) < LAST_TERM)
             break;
     }
     return sum;

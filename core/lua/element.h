@@ -23,8 +23,9 @@ typedef struct tl_lua_asked {
     const char *must;
 } tl_lua_asked;
 
-/* Asks the function at index `function`, which may only read the model, for a number at each place, as f(x, y, z), from
- * the place `first` on; those before get 0. Frees `places`, and pushes what holds the list. Raises at another answer. */
+/* Asks the function at index `function` for a number at each place, as f(x, y, z), from the place `first` on; those
+ * before get 0. The function may only read the model. Frees `places`, and pushes what holds the list. Raises at another
+ * answer. */
 const double *tl_lua_ask_places(lua_State *L, int function, tl_vec3 *places, size_t first, size_t count,
                                 const tl_lua_asked *asked);
 

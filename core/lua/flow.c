@@ -184,10 +184,11 @@ static const double *ask_apertures(lua_State *L, tl_model *model, int table, int
         lua_pop(L, 1);
     }
     const double residual = number_of(L, table, kind, "residual"), maximum = number_of(L, table, kind, "maximum");
-    const tl_lua_asked asked = {
-        residual, maximum, false,
-        lua_pushfstring(L, "water 'flow': aperture must give a number above residual = %f and at most maximum = %f, m",
-                        residual, maximum)};
+    char must[160];
+    tl_text_print(must, sizeof must,
+                  "water 'flow': aperture must give a number above residual = %g and at most maximum = %g, m", residual,
+                  maximum);
+    const tl_lua_asked asked = {residual, maximum, false, must};
     return tl_lua_ask_places(L, function, places, ends, count, &asked);
 }
 

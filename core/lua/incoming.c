@@ -16,10 +16,9 @@
 #include <talus/vmath.h>
 #include <talus/zones.h>
 
-/* Tolerance: over the square root of a face's area, how far off its plane corners of its triangles may be; and cosine
- * of the angle between their normals. Test: lua/test_quiet_zones. */
+/* Tolerance: over the square root of a face's area, how far off its plane corners of its triangles may be. Test:
+ * lua/test_quiet_zones. */
 #define OFF_PLANE 1e-3
-#define ALIKE 0.9
 /* Tolerance: by so much of it the area of a face may be more than that of its bare part. Test: lua/test_quiet_zones. */
 #define COVERED 1e-3
 
@@ -132,8 +131,6 @@ static double add_side(const zones_of *of, size_t zone, const uint32_t corner[3]
     const tl_vec3 area =
         tl_v3_scale(0.5, tl_v3_cross(tl_v3_sub(x[corner[1]], x[corner[0]]), tl_v3_sub(x[corner[2]], x[corner[0]])));
     const double size = tl_v3_norm(area);
-    if (fabs(tl_v3_dot(area, f->normal)) < ALIKE * size)
-        return 0;
     for (int a = 0; a < 3; a++) {
         portion *to = &of->to[corner[a]];
         to->area += size / 3;

@@ -155,6 +155,17 @@ model:generate("box", { min = { -1, 0, 0 }, max = { 0, 1, 1.5 }, density = 2500 
 model:generate("box", { min = { -1, 0, 1.5 }, max = { 0, 1, 5 }, density = 2500 })
 model:generate("box", { min = { -1, 1, 0 }, max = { 0, 2, 5 }, density = 2500 })
 refused({ zmin = { quiet = true }, xmin = "free_field" }, "blocks at a free field lie in level rows")
+model = site {} -- rows whose levels differ by 2 cm
+model:generate("box", { min = { -1, 0, 0 }, max = { 0, 1, 2 }, density = 2500 })
+model:generate("box", { min = { -1, 0, 2 }, max = { 0, 1, 5 }, density = 2500 })
+model:generate("box", { min = { -1, 1, 0 }, max = { 0, 2, 2.02 }, density = 2500 })
+model:generate("box", { min = { -1, 1, 2.02 }, max = { 0, 2, 5 }, density = 2500 })
+refused({ zmin = { quiet = true }, xmin = "free_field" }, "blocks at a free field lie in level rows")
+model = talus.model {} -- a side that leans by 0.1 degrees
+model:generate("polyhedron", { density = 2500, vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 },
+    { 1.7e-3, 0, 1 }, { 1, 0, 1 }, { 1, 1, 1 }, { 1.7e-3, 1, 1 } } })
+model:joint("*", "elastic", { kn = 1e10, ks = 4e9 })
+refused({ zmin = { quiet = true }, xmin = { free_field = true, tolerance = 0.01 } }, "are vertical and look one way")
 model = site {}
 model:blocks { containing = { 0.5, 0.5, 4.5 } }:fix { y = true }
 model:generate("box", { min = { 0, 1, 4 }, max = { 1, 2, 5 }, density = 2500 })

@@ -34,6 +34,9 @@ do
     check.near(one:mean().dip, 33, 1e-12)
     check.holds(one:mean().kappa ~= one:mean().kappa and one:mean().cone ~= one:mean().cone)
     check.equal(talus.poles({ { 33, 44 }, { 33, 44 } }):mean().kappa, math.huge)
+    -- Two poles that are hardly apart: N - R = 2 - 2 cos(0.0005 degrees).
+    local apart = math.rad(5e-4)
+    check.near(talus.poles({ { 33, 44 }, { 33.001, 44 } }):mean().kappa * apart ^ 2, 1, 1e-4)
 end
 
 -- Along a vertical scan line a plane of dip d has the weight 1 / cos d, at most 10.

@@ -14,7 +14,7 @@ local function bar(o)
     model:solid("rock", "elastic", { young = 1e10, poisson = 0 })
     model:solid("stiff", "elastic", { young = 4e10, poisson = 0 })
     model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 8 }, density = 2500 })
-    model:blocks():deformable { zone = 1, solid = "rock" }
+    model:blocks():deformable { zone = o.zone or 1, solid = "rock" }
     model:gridpoints {}:fix { y = true, z = true }
     model:boundary { zmin = { quiet = true, input = { wave, 0, 0 } } }
     return model
@@ -31,6 +31,12 @@ for _, node in ipairs(nodes) do
     area = area + node.weight
     check.near(node.impedance_p, 5e6, 1)
     check.near(node.impedance_s, 5e6 / math.sqrt(2), 1)
+end
+check.near(area, 1, 1e-12)
+area = 0 -- of zones much smaller than the face, whose other sides lie near it
+for _, node in ipairs(bar { zone = 0.25 }:elements { kind = "incoming" }[1].nodes) do
+    area = area + node.weight
+    check.near(node.position[3], 0, 1e-12)
 end
 check.near(area, 1, 1e-12)
 while model.time < 0.012 do

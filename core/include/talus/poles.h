@@ -21,6 +21,9 @@
 #define TL_JACOBI_SWEEPS 12
 /* Limit: passes in which poles are turned to the side of their mean; two are the rule. */
 #define TL_POLES_PASSES 20
+/* Tolerance: by how much the sum of poles is shorter than their number, relative, where they are one pole but for
+ * rounding. Test: lua/test_poles. */
+#define TL_POLES_ALIKE 1e-15
 
 /* A plane that was measured. */
 typedef struct tl_measured {
@@ -151,7 +154,7 @@ static inline tl_poles_mean tl_poles_mean_of(const tl_vec3 *normal, const double
     tl_poles_mean made;
     made.mean = mean.z < 0 ? tl_v3_neg(mean) : mean;
     made.resultant = fmin(length / n, 1);
-    made.concentration = count < 2 ? NAN : lack <= 1e-15 * n ? INFINITY : (n - 1) / lack;
+    made.concentration = count < 2 ? NAN : lack <= TL_POLES_ALIKE * n ? INFINITY : (n - 1) / lack;
     made.cone = count < 2 ? NAN : 57.29577951308232 * tl_atan2(sqrt(fmax(1 - cosine * cosine, 0)), cosine);
     return made;
 }

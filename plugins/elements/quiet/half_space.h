@@ -1,5 +1,5 @@
-/* half_space.h - what the kinds "quiet", "free_field" and "incoming" share: rock that was cut off behind a face, waves that come in
- * through it, and points of a face. */
+/* half_space.h - what the kinds "quiet", "free_field" and "incoming" share: rock that was cut off behind a face, waves
+ * that come in through it, and points of a face. */
 #ifndef HALF_SPACE_H
 #define HALF_SPACE_H
 
