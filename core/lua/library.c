@@ -413,7 +413,8 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .usage = "poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles(\"FILE\")",
      .doc = "Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, "
             "and weight "
-            "if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.",
+            "if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; "
+            "with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing.",
      .title = "Methods",
      .verbs = poles_methods},
     {.name = "realisations",
