@@ -190,27 +190,44 @@ local whole = folder .. "/whole.csv"
 os.remove(whole)
 check.holds(shell("'%s' --quiet '%s' '%s' 1", program, script, whole))
 
--- Killed at any moment it goes on, to the same bytes: 100 kills in all, one in ten of them in a short test.
+-- Killed at any moment it goes on, to the same bytes: 100 kills in all, one in ten of them in a short test. The clock of a kill
+-- begins with the first bytes of the file, and has steps that share nothing with that of rows.
 do
-    local path, kills = folder .. "/killed.csv", check.cases(100)
+    local WORKERS = { 1, 2, 3, 5 }
+    local path, kills, partly = folder .. "/killed.csv", check.cases(100), 0
     for kill = 1, kills do
         os.remove(path)
-        local shares = 1 + kill % 3
-        for _ = 1, shares do
-            -- the clock that kills has steps that share nothing with that of rows
-            shell("'%s' --quiet '%s' '%s' %d & p=$!; sleep 0.0%02d; kill -9 $p 2>/dev/null; wait $p 2>/dev/null", program, script,
-                path, 1 + kill % 3, 11 + (37 * kill) % 79)
+        for _ = 1, 1 + kill % 3 do
+            shell("'%s' --quiet '%s' '%s' %d & p=$!; while kill -0 $p 2>/dev/null && ! [ -s '%s' ]; do :; done; " ..
+                "sleep 0.0%02d; kill -9 $p 2>/dev/null; wait $p 2>/dev/null", program, script, path, WORKERS[1 + kill % 4], path,
+                (37 * kill) % 31)
         end
-        -- an end in the middle of a line
-        if kill % 5 == 0 and exists(path) then
-            local cut = read(path)
-            local torn = assert(io.open(path, "wb"))
-            torn:write(cut:sub(1, math.max(#cut - 1 - kill % 40, 0)))
-            torn:close()
-        end
-        check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+        partly = partly + (exists(path) and #read(path) < #read(whole) and 1 or 0)
+        check.holds(shell("'%s' --quiet '%s' '%s' %d", program, script, path, WORKERS[1 + kill // 4 % 4]))
         check.equal(read(path), read(whole))
     end
+    check.holds(partly > 0, "some kill before the end")
+end
+
+-- A file that ends anywhere, as a full disk leaves it, is gone on with: in the first line, in the names, in and between rows.
+do
+    local path, text = folder .. "/torn.csv", read(whole)
+    local first = text:find "\n"
+    local names = text:find("\n", first + 1, true)
+    for _, bytes in ipairs { 0, 1, first - 1, first, first + 3, names - 1, names, names + 1, names + 9, #text // 2, #text - 1, #text } do
+        local torn = assert(io.open(path, "wb"))
+        torn:write(text:sub(1, bytes))
+        torn:close()
+        check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+        check.equal(read(path), text)
+    end
+    -- a file as large as it may be: what is in it is kept, and gone on with
+    os.remove(path)
+    check.holds(not shell("(ulimit -f 8; '%s' --quiet '%s' '%s' 2 2>'%s/said')", program, script, path, folder))
+    check.holds(read(folder .. "/said"):find "cannot write '.*torn.csv': File too large")
+    check.holds(#read(path) > 0 and text:sub(1, #read(path)) == read(path))
+    check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+    check.equal(read(path), text)
 end
 
 -- ------------------------------------------------------------------ shards
@@ -238,6 +255,15 @@ do
     good, said = merge()
     check.holds(good and said:find "150 rows of 4 files")
     check.equal(read(path), read(whole))
+    -- whatever the number of shards
+    for count = 1, check.cases(70) >= 70 and 7 or 3 do
+        os.remove(path)
+        for i = 1, count do
+            check.holds(shell("'%s' run --quiet --shard %d/%d '%s' '%s' %d", program, i, count, script, path .. count, 1 + i % 2))
+        end
+        check.holds(shell("'%s' merge '%s' 2>'%s/said'", program, path .. count, folder))
+        check.equal(read(path .. count), read(whole))
+    end
     -- errors are counted among all rows: one that one process bears ends no shard, however few rows that has
     local script_of_one = folder .. "/one_error.lua"
     local text = assert(io.open(script_of_one, "wb"))
@@ -405,6 +431,8 @@ for _, case in ipairs {
     { { number = 3, stop_when = { field = "failed" } }, "stop_when: 'half_width' is missing" },
     { { number = 3, file = "/dev/null" }, "it is no regular file" },
     { { number = 61, seed = 4, file = folder .. "/rows_1.csv" }, "is of number = 60, seed = 4, latin = false, not of 61, 4, false" },
+    { { number = 60, seed = 5, file = folder .. "/rows_1.csv" }, "is of number = 60, seed = 4, latin = false, not of 60, 5, false" },
+    { { number = 60, seed = 4, latin = true, file = folder .. "/rows_1.csv" }, "not of 60, 4, true" },
     { { number = 3, file = script }, "is no file of realisations: give another name" },
 } do
     check.raises(function()
