@@ -401,7 +401,29 @@ do
     local histogram = set:histogram("v", 3)
     check.near(histogram.edges, { 1, 4, 7, 10 }, 0)
     check.near(histogram.counts, { 3, 0, 1 }, 0)
+    -- numbers that are none count nowhere; infinite ones are the last or the first
+    local odd = { math.huge, 0 / 0, 1, -math.huge, 3 }
+    local far = run { number = 5, build = function() return empty end, measure = function(_, draw)
+        return { v = odd[draw.row], top = math.max(odd[draw.row], 1), all = 0 / 0 }
+    end }
+    check.equal(far:quantile("v", 0), -math.huge)
+    check.equal(far:quantile("v", 0.1), -math.huge)
+    check.equal(far:quantile("v", 1 / 3), 1)
+    check.equal(far:quantile("v", 0.5), 2.0)
+    check.equal(far:quantile("v", 2 / 3), 3)
+    check.equal(far:quantile("v", 0.9), math.huge)
+    check.equal(far:mean "top", math.huge)
+    -- one row
+    local one = run { number = 1, build = function() return empty end, measure = function() return { v = 7, yes = true, no = false } end }
+    check.equal(one:quantile("v", 0.3), 7)
+    check.near({ one:probability "yes" }, { 1, 0.025, 1 }, 1e-14)
+    check.near({ one:probability "no" }, { 0, 0, 0.975 }, 1e-14)
     for _, case in ipairs {
+        { function() far:sd "top" end, "sd: 'top' has numbers that are not finite" },
+        { function() far:mean "all" end, "mean: no realisation has a number 'all'" },
+        { function() far:probability "v" end, "probability: realisation 2 has no 'v' that is true, false or a number" },
+        { function() far:histogram "top" end, "histogram: 'top' has numbers that are not finite" },
+        { function() one:sd "v" end, "sd: 'v' has one number only" },
         { function() set:mean "w" end, "mean: no realisation has a field 'w'" },
         { function() set:mean() end, "mean: name a field" },
         { function() set:quantile("v", 2) end, "quantile: the share must be in [0, 1], not the number 2" },
