@@ -294,7 +294,7 @@ static const tl_lua_key realisations_draws[] = {
     {"draw.seed(name)", "", "a seed for a model"},
     {"draw.correlated(names, {{mean, sd}, ...}, correlation)", "",
      "numbers of normal distributions, or with distribution = \"lognormal\" in a pair, correlated before they are cut "
-     "off by min and max; a number for two, else a matrix"},
+     "off by min and max; a number for two, else a matrix. With latin for at most 1,000,000 realisations"},
     {"draw.row", "", "number of the realisation"},
     {"set:probability(field)", "",
      "share of rows in which the field is true or not 0; low and high of its 95 % interval"},

@@ -384,6 +384,61 @@ do
     check.equal(#seen + (seen[0] and 1 or 0), 400)
 end
 
+-- Of a Latin hypercube each n-th part of every distribution has one row: cut off or not, correlated or not.
+do
+    local chance = require "talus.chance"
+    local N, shares = 300, {}
+    local function add(name, family, range, a, b, c)
+        local from, to = range and range.min or -math.huge, range and range.max or math.huge
+        shares[name] = function(stratum) return chance.quantile(family, stratum / N, a, b, c or 0, from, to) end
+    end
+    for _, case in ipairs { { "normal", 10, 2 }, { "lognormal", 10, 2 }, { "normal", 10, 2, { min = 9, max = 13 } },
+        { "lognormal", 10, 2, { min = 9 } } } do
+        local family, mean, sd, range = table.unpack(case)
+        local name = family .. (range and " cut" or "")
+        add(name, family, range, mean, sd)
+        add("with " .. name, family, range, mean, sd)
+        add("against " .. name, family, range, mean, sd)
+    end
+    add("uniform", "uniform", nil, 0, 1)
+    add("triangular", "triangular", nil, 0, 1, 4)
+    add("power_law", "power_law", nil, 2.5, 1, 20)
+    local function build(draw)
+        for name in pairs(shares) do
+            local family, cut = name:match "^(%a+)( ?c?u?t?)$"
+            local range = cut == " cut" and (family == "normal" and { min = 9, max = 13 } or { min = 9 }) or nil
+            if family == "normal" or family == "lognormal" then
+                draw[family](name, 10, 2, range)
+                local pair = { 10, 2, distribution = family, min = range and range.min, max = range and range.max }
+                draw.correlated({ name .. " first", "with " .. name, "against " .. name }, { { 0, 1 }, pair, pair },
+                    { { 1, 0.6, -0.3 }, { 0.6, 1, 0 }, { -0.3, 0, 1 } })
+            end
+        end
+        draw.uniform("uniform", 0, 1)
+        draw.triangular("triangular", 0, 1, 4)
+        draw.power_law("power_law", 2.5, 1, 20)
+        return empty
+    end
+    local set = run { number = N, latin = true, seed = 6, workers = 2, build = build, measure = function() return { made = true } end }
+    local rows = set:rows()
+    for name, value in pairs(shares) do
+        table.sort(rows, function(a, b) return a[name] < b[name] end)
+        for i, row in ipairs(rows) do
+            check.holds((i == 1 or row[name] >= value(i - 1)) and (i == N or row[name] <= value(i)), name)
+        end
+    end
+    for _, item in ipairs(set:sensitivity "normal first") do
+        if item.name == "with normal" or item.name == "against normal" then
+            check.near(item.correlation, item.name == "with normal" and 0.6 or -0.3, 0.12)
+        end
+    end
+    local good, message = pcall(run, { number = 1000001, latin = true, build = function(draw)
+        draw.correlated({ "a", "b" }, { { 0, 1 }, { 0, 1 } }, 0.5)
+        return empty
+    end })
+    check.holds(not good and message:find "with latin = true correlated draws are for at most 1000000 realisations, not 1000001$")
+end
+
 -- ------------------------------------------------------------------ statistics
 
 do
