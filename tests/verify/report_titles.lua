@@ -30,6 +30,7 @@ local TITLES = {
     { "DFN.power_law.([%d.]+)", "radii of a power law, exponent %1" },
     { "PF.interval", "intervals of probabilities" },
     { "PF.plane.friction", "probability that a block slides, friction at random" },
+    { "PF.slope", "keyblocks against runs, realisations of a slope" },
     { "PF.plane.three", "the same with friction, cohesion and water at random" },
     { "DYN.freefield", "columns of a site between free fields" },
     { "DYN.freefield.base", "free fields on a base that is driven, and with damping" },

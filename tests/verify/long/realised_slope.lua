@@ -20,16 +20,26 @@ local SHARE = tonumber(os.getenv "TALUS_TEST_SHARE" or 1)
 local RATIO, PATIENCE = 1e-4, 50000 -- unbalanced force ratio at rest; cycles
 local SCREEN = 1.2                  -- least factor up to which realisations are run
 
--- The blocks that fail in a run, by id, and whether one of them counts; nil when the run ends otherwise.
+local function listed(model, ids, inside)
+    return model:blocks { where = function(block) return (ids[block.id] ~= nil) == inside end }
+end
+
+-- The blocks that fail in a run, by id, and whether one of them counts; nil when the run ends otherwise. Where only smaller ones fail
+-- they are deleted, and the run goes on.
 local function run(model)
-    local result = model:relax { ratio = RATIO, max_cycles = PATIENCE }
-    if result.reason ~= "rest" and result.reason ~= "failure" then
+    local result, failed, counts
+    repeat
+        result, failed, counts = model:relax { ratio = RATIO, max_cycles = PATIENCE }, {}, false
+        for _, block in ipairs(result.failing or {}) do
+            failed[block.id] = true
+            counts = counts or block.volume >= slope.smallest
+        end
+        if not counts then
+            listed(model, failed, true):delete()
+        end
+    until counts or not next(failed)
+    if not counts and result.reason ~= "rest" then
         return nil, false
-    end
-    local failed, counts = {}, false
-    for _, block in ipairs(result.failing or {}) do
-        failed[block.id] = true
-        counts = counts or block.volume >= slope.smallest
     end
     return failed, counts
 end
@@ -45,10 +55,6 @@ local function unsafe_of(model, friction)
         end
     end
     return large, small, least
-end
-
-local function listed(model, ids, inside)
-    return model:blocks { where = function(block) return (ids[block.id] ~= nil) == inside end }
 end
 
 -- Why a keyblock does not fail.
