@@ -19,7 +19,14 @@
  *
  *     w A / K d(phi)/dt + A dw/dt + sum of q = 0
  *
- * by one implicit step for the time since the last call; a pressure below 0 becomes 0.
+ * for the time since the last call, with the apertures of now and dw/dt the same all the while. That time has parts of
+ * h. Of each an implicit step gives phi(h), and two of h/2 give phi(h/2, h/2). Both are stable for any h, and
+ *
+ *     2 phi(h/2, h/2) - phi(h)
+ *
+ * is of second order (Richardson 1911). Where the two differ too much the part is halved. After each part a pressure
+ * below 0 becomes 0. Flows are those of the mean potential, phi(h/2) + phi(h/2, h/2) - phi(h) of each part by its
+ * length: so what flows in is what is stored.
  *
  * The equations are solved by conjugate gradients with the diagonal as preconditioner, one after the other, so the
  * bits do not depend on threads. Unsaturated joints are not followed: one above the water conducts as if it were full,
@@ -28,8 +35,16 @@
 
 /* Tolerance: residual of the equations over that of the heads, where iterations end. Test: lua/test_flow. */
 #define CONVERGED 1e-10
+/* Tolerance: the same of steps in time, where what is left over is water that is lost. Test: lua/test_stored_flow. */
+#define STEP_CONVERGED 1e-13
 /* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
 #define MOST_ITERATIONS 20
+
+/* Tolerance: largest difference of the potentials by one implicit step and by two of half of it, over the largest
+ * difference of potentials that there is. Test: lua/test_stored_flow. */
+#define STEP_ERROR 1e-4
+/* Limit: the time since the last call over its shortest part. */
+#define MOST_PARTS 1048576.0
 
 /* Limit: ratio of the radii of a drain, of which `place` refuses smaller ones: joints that are cut become smaller. */
 #define LEAST_RATIO 1.05
@@ -52,12 +67,17 @@ typedef struct net {
     double *sum, *phi;        /* of a crossing: of t; its potential in the last product */
     double *x, *r, *way, *y;  /* of a cell: potential, Pa; residual, direction and product */
     double *extra, *diagonal; /* of a cell: of drains and storage; of the matrix */
+    double *leak, *linked;    /* of a cell: of drains; of the matrix without storage */
+    double *source, *store;   /* of a cell: right side without storage, m3/s; w A / K, m3/Pa */
+    double *mean;             /* of a cell: potential by which it has flowed since the last call, Pa */
+    double *from, *one, *two; /* of a cell: before a part, after one step, and after half of two, Pa */
     double *width;            /* of a cell, m: aperture */
     unsigned char *closed, *open, *drained;
     hit *drain;
     size_t hits, hit_capacity;
     double base; /* Pa: potentials count from it */
     double step; /* s; 0: none */
+    bool flows;  /* their flows are found: time has passed, or they had none yet */
 } net;
 
 /* ---------------------------------------------------------------- geometry --------------- */
@@ -176,7 +196,9 @@ static bool make_room(net *n)
         return false;
     n->first[n->cells] = (uint32_t)n->sides;
     n->crossings = (size_t)(top + 1);
-    double **const of_cells[] = {&n->x, &n->r, &n->way, &n->y, &n->extra, &n->diagonal, &n->width};
+    double **const of_cells[] = {&n->x,        &n->r,    &n->way,    &n->y,      &n->extra,
+                                 &n->diagonal, &n->leak, &n->linked, &n->source, &n->store,
+                                 &n->mean,     &n->from, &n->one,    &n->two,    &n->width};
     bool enough = true;
     for (size_t k = 0; k < sizeof of_cells / sizeof *of_cells; k++)
         enough = (*of_cells[k] = calloc(n->cells + 1, sizeof(double))) != NULL && enough;
@@ -194,9 +216,10 @@ static bool make_room(net *n)
 
 static void release(net *n)
 {
-    void *const owned[] = {n->first,    n->crossing, n->t,      n->head, n->given,   n->sum,
-                           n->phi,      n->x,        n->r,      n->way,  n->y,       n->extra,
-                           n->diagonal, n->width,    n->closed, n->open, n->drained, n->drain};
+    void *const owned[] = {n->first,  n->crossing, n->t,       n->head,  n->given, n->sum,      n->phi,
+                           n->x,      n->r,        n->way,     n->y,     n->extra, n->diagonal, n->width,
+                           n->closed, n->open,     n->drained, n->drain, n->leak,  n->linked,   n->source,
+                           n->store,  n->mean,     n->from,    n->one,   n->two};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
 }
@@ -353,29 +376,27 @@ static double product(const net *n, const double *a, const double *b)
     return (part[0] + part[1]) + (part[2] + part[3]);
 }
 
-/* Fills the diagonal, and the right side into r. */
+/* Fills what the equations have without storage, and what cells store. */
 static void set_up(net *n)
 {
     for (size_t k = 0; k < n->hits; k++) {
-        n->extra[n->drain[k].cell] += n->drain[k].conductance;
-        n->r[n->drain[k].cell] += n->drain[k].conductance * n->drain[k].phi;
+        n->leak[n->drain[k].cell] += n->drain[k].conductance;
+        n->source[n->drain[k].cell] += n->drain[k].conductance * n->drain[k].phi;
     }
     for (size_t e = 0; e < n->cells; e++) {
         if (!is_joint(n, e) || n->closed[e])
             continue;
         const double area = n->b->element_state[FLOW_AREA][e], had = n->b->element_state[FLOW_APERTURE][e];
         if (n->step > 0) {
-            const double store = n->width[e] * area / (n->p->bulk * n->step);
-            n->extra[e] += store;
-            n->r[e] += store * n->x[e] - (had > 0 ? (n->width[e] - had) * area / n->step : 0);
+            n->store[e] = n->width[e] * area / n->p->bulk;
+            n->source[e] -= had > 0 ? (n->width[e] - had) * area / n->step : 0;
         }
-        double diagonal = n->extra[e];
+        n->linked[e] = n->leak[e];
         for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
             const uint32_t c = n->crossing[k];
-            diagonal += n->head[c] ? n->t[k] : n->t[k] * (1 - n->t[k] / n->sum[c]);
-            n->r[e] += n->head[c] ? n->t[k] * n->given[c] : 0;
+            n->linked[e] += n->head[c] ? n->t[k] : n->t[k] * (1 - n->t[k] / n->sum[c]);
+            n->source[e] += n->head[c] ? n->t[k] * n->given[c] : 0;
         }
-        n->diagonal[e] = diagonal;
     }
 }
 
@@ -394,14 +415,14 @@ static void still(net *n)
 }
 
 /* Conjugate gradients. false: they do not converge. */
-static bool iterate(net *n)
+static bool iterate(net *n, double converged)
 {
     const double wanted = scaled_product(n, n->r, n->r);
     multiply(n, n->x, n->y);
     for (size_t e = 0; e < n->cells; e++)
         n->r[e] = n->diagonal[e] > 0 ? n->r[e] - n->y[e] : 0;
     double now = scaled_product(n, n->r, n->r);
-    const double end = CONVERGED * CONVERGED * fmax(wanted, now), most = MOST_ITERATIONS * (double)n->cells + 1000;
+    const double end = converged * converged * fmax(wanted, now), most = MOST_ITERATIONS * (double)n->cells + 1000;
     for (size_t e = 0; e < n->cells; e++)
         n->way[e] = n->diagonal[e] > 0 ? n->r[e] / n->diagonal[e] : 0;
     for (double i = 0; now > end; i++) {
@@ -419,6 +440,98 @@ static bool iterate(net *n)
         now = next;
     }
     return isfinite(now);
+}
+
+/* ---------------------------------------------------------------- time ------------------- */
+
+/* An implicit step of h from x, or with h = INFINITY what is steady. false: it does not converge. */
+static bool take_step(net *n, double h)
+{
+    for (size_t e = 0; e < n->cells; e++) {
+        const double store = n->store[e] / h;
+        n->extra[e] = n->leak[e] + store;
+        n->diagonal[e] = n->linked[e] + store;
+        n->r[e] = n->source[e] + store * n->x[e];
+    }
+    return iterate(n, h < INFINITY ? STEP_CONVERGED : CONVERGED);
+}
+
+/* Largest difference of the potentials of cells, heads and drains. */
+static double range_of(const net *n)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (size_t e = 0; e < n->cells; e++) {
+        least = n->store[e] > 0 ? fmin(least, n->x[e]) : least;
+        most = n->store[e] > 0 ? fmax(most, n->x[e]) : most;
+    }
+    for (size_t c = 0; c < n->crossings; c++) {
+        least = n->head[c] ? fmin(least, n->given[c]) : least;
+        most = n->head[c] ? fmax(most, n->given[c]) : most;
+    }
+    for (size_t k = 0; k < n->hits; k++) {
+        least = fmin(least, n->drain[k].phi);
+        most = fmax(most, n->drain[k].phi);
+    }
+    return fmax(0, most - least);
+}
+
+/* Goes on from x by a part of h. `error` becomes the difference of one step and two, and `most` what it may be, Pa. */
+static bool try_part(net *n, double h, double *error, double *most)
+{
+    const size_t bytes = n->cells * sizeof *n->x;
+    memcpy(n->from, n->x, bytes);
+    if (!take_step(n, h))
+        return false;
+    memcpy(n->one, n->x, bytes);
+    memcpy(n->x, n->from, bytes);
+    if (!take_step(n, 0.5 * h))
+        return false;
+    memcpy(n->two, n->x, bytes);
+    if (!take_step(n, 0.5 * h))
+        return false;
+    double change = range_of(n), size = 0;
+    *error = 0;
+    for (size_t e = 0; e < n->cells; e++) {
+        if (!(n->store[e] > 0))
+            continue;
+        *error = fmax(*error, fabs(n->x[e] - n->one[e]));
+        change = fmax(change, fabs(n->x[e] - n->from[e]));
+        size = fmax(size, fabs(n->x[e]));
+    }
+    *most = STEP_ERROR * change + CONVERGED * size;
+    return true;
+}
+
+/* Takes over what a part of h has come to. */
+static void keep_part(net *n, double h)
+{
+    for (size_t e = 0; e < n->cells; e++) {
+        if (!(n->store[e] > 0))
+            continue;
+        const cell c = cell_of(n, e);
+        n->mean[e] += h / n->step * (n->two[e] + n->x[e] - n->one[e]);
+        n->x[e] = fmax(2 * n->x[e] - n->one[e], n->p->unit_weight * height_of(n, &c) - n->base);
+    }
+}
+
+/* Follows the water for the time since the last call. */
+static bool follow(net *n)
+{
+    double left = n->step, h = n->step, error, most;
+    while (left > 0) {
+        h = fmin(h, left);
+        if (!try_part(n, h, &error, &most))
+            return false;
+        if (error > most && h > n->step / MOST_PARTS) {
+            memcpy(n->x, n->from, n->cells * sizeof *n->x);
+            h *= 0.5;
+            continue;
+        }
+        keep_part(n, h);
+        left = h < left ? left - h : 0;
+        h *= error < 0.25 * most ? 2 : 1;
+    }
+    return true;
 }
 
 /* ---------------------------------------------------------------- what comes of it ------- */
@@ -467,14 +580,14 @@ static void give_flows(net *n)
     for (size_t e = 0; e < n->cells; e++)
         for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
             const uint32_t c = n->crossing[k];
-            const double q = n->t[k] * (n->x[e] - n->phi[c]);
+            const double q = n->t[k] * (n->mean[e] - n->phi[c]);
             flow[e] += 0.5 * fabs(q);
             if (n->head[c] && n->t[k] > 0)
                 flow[n->head[c] - 1] -= q;
         }
     for (size_t k = 0; k < n->hits; k++) {
         const hit *h = &n->drain[k];
-        const double q = n->closed[h->cell] ? 0 : h->conductance * (n->x[h->cell] - h->phi);
+        const double q = n->closed[h->cell] ? 0 : h->conductance * (n->mean[h->cell] - h->phi);
         flow[h->cell] += 0.5 * fabs(q);
         flow[h->drain] -= q;
     }
@@ -483,8 +596,11 @@ static void give_flows(net *n)
 static void give_all(net *n)
 {
     const tl_element_batch *b = n->b;
+    if (n->flows) {
+        meet(n, n->mean, false);
+        give_flows(n);
+    }
     meet(n, n->x, false);
-    give_flows(n);
     for (size_t e = 0; e < n->cells; e++) {
         b->element_state[FLOW_TIME][e] = b->time;
         if (!is_joint(n, e))
@@ -505,35 +621,35 @@ static TL_PRINTF(3, 4) tl_status refuse(tl_report *report, tl_status status, con
     return status;
 }
 
-/* Time since the last call, s. */
-static double step_of(const tl_element_batch *b)
+/* When pressures were found last, s; -1: never. */
+static double last_time(const tl_element_batch *b)
 {
     double last = -1;
     for (uint32_t e = 0; e < b->count; e++)
         last = fmax(last, b->element_state[FLOW_TIME][e]);
-    return last < 0 ? 0 : b->time - last;
+    return last;
 }
 
 static tl_status solve(net *n, tl_report *report)
 {
     if (!build(n))
         return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
-    n->step = n->p->steady ? 0 : step_of(n->b);
+    const double last = last_time(n->b);
+    n->step = n->p->steady || last < 0 ? 0 : n->b->time - last;
+    n->flows = n->p->steady || last < 0 || n->step > 0;
     if (n->p->steady &&
         !flow_find_closed(n->cells, n->first, n->crossing, n->crossings, n->open, n->drained, n->closed))
         return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
     still(n);
     set_up(n);
-    if ((n->p->steady || n->step > 0) && !iterate(n))
+    const bool follows = n->step > 0;
+    if (follows ? !follow(n) : n->p->steady && !take_step(n, INFINITY))
         return refuse(report, TL_E_NUMERIC,
                       "the flow does not converge in %d iterations for each of %u joints: bring residual and "
                       "maximum, %g and %g m, nearer to each other",
                       MOST_ITERATIONS, n->b->count, n->p->residual, n->p->maximum);
     for (size_t e = 0; e < n->cells; e++)
-        if (n->step > 0 && is_joint(n, e)) {
-            const cell c = cell_of(n, e);
-            n->x[e] = fmax(n->x[e], n->p->unit_weight * height_of(n, &c) - n->base);
-        }
+        n->mean[e] = follows && n->store[e] > 0 ? n->mean[e] : n->x[e];
     give_all(n);
     return TL_OK;
 }
