@@ -75,9 +75,11 @@ typedef struct net {
     unsigned char *closed, *open, *drained;
     hit *drain;
     size_t hits, hit_capacity;
+    uint32_t *head_row, *drain_row; /* of the elements that are heads and drains: they may be anywhere */
+    size_t head_count, drain_count;
     double base; /* Pa: potentials count from it */
     double step; /* s; 0: none */
-    bool flows;  /* their flows are found: time has passed, or they had none yet */
+    bool flows;  /* flows are found: time has passed, or some have none yet */
 } net;
 
 /* ---------------------------------------------------------------- geometry --------------- */
@@ -199,7 +201,14 @@ static bool make_room(net *n)
     double **const of_cells[] = {&n->x,        &n->r,    &n->way,    &n->y,      &n->extra,
                                  &n->diagonal, &n->leak, &n->linked, &n->source, &n->store,
                                  &n->mean,     &n->from, &n->one,    &n->two,    &n->width};
-    bool enough = true;
+    n->head_row = malloc((n->cells + 1) * sizeof *n->head_row);
+    n->drain_row = malloc((n->cells + 1) * sizeof *n->drain_row);
+    bool enough = n->head_row && n->drain_row;
+    for (size_t k = 0; k < n->cells && enough; k++)
+        if (role_of(n, k) == FLOW_AT_HEAD)
+            n->head_row[n->head_count++] = (uint32_t)k;
+        else if (role_of(n, k) == FLOW_AT_DRAIN)
+            n->drain_row[n->drain_count++] = (uint32_t)k;
     for (size_t k = 0; k < sizeof of_cells / sizeof *of_cells; k++)
         enough = (*of_cells[k] = calloc(n->cells + 1, sizeof(double))) != NULL && enough;
     double **const of_crossings[] = {&n->sum, &n->phi, &n->given};
@@ -219,22 +228,22 @@ static void release(net *n)
     void *const owned[] = {n->first,  n->crossing, n->t,       n->head,  n->given, n->sum,      n->phi,
                            n->x,      n->r,        n->way,     n->y,     n->extra, n->diagonal, n->width,
                            n->closed, n->open,     n->drained, n->drain, n->leak,  n->linked,   n->source,
-                           n->store,  n->mean,     n->from,    n->one,   n->two};
+                           n->store,  n->mean,     n->from,    n->one,   n->two,   n->head_row, n->drain_row};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
 }
 
 /* Adds the drains that pass a cell. false: out of memory. */
-static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
+static bool add_drains(net *n, size_t e, const cell *c)
 {
     const tl_element_batch *b = n->b;
     tl_vec3 corner[TL_ELEMENT_NODES];
-    for (uint32_t i = 0; first_drain < n->cells && i < c->corners; i++)
+    for (uint32_t i = 0; n->drain_count > 0 && i < c->corners; i++)
         corner[i] = corner_of(n, c, i);
-    for (size_t k = first_drain; k < n->cells; k++) {
+    for (size_t i = 0; i < n->drain_count; i++) {
+        const uint32_t k = n->drain_row[i];
         double z;
-        if (role_of(n, k) != FLOW_AT_DRAIN ||
-            !flow_drain_meets(corner, c->corners, c->normal, node_at(b, b->start[k]), node_at(b, b->start[k] + 1), &z))
+        if (!flow_drain_meets(corner, c->corners, c->normal, node_at(b, b->start[k]), node_at(b, b->start[k] + 1), &z))
             continue;
         if (n->hits == n->hit_capacity) {
             const size_t more = n->hits ? 2 * n->hits : 64;
@@ -247,37 +256,29 @@ static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
         const double ratio = FLOW_WELL_RADIUS * sqrt(c->area) / b->weight[b->start[k]], w = n->width[e];
         const double conductance =
             2 * TL_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
-        n->drain[n->hits++] =
-            (hit){(uint32_t)e, (uint32_t)k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
+        n->drain[n->hits++] = (hit){(uint32_t)e, k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
         n->drained[e] = 1;
     }
     return true;
-}
-
-/* The first element that is a drain; `cells`: there is none. */
-static size_t find_drains(const net *n)
-{
-    size_t k = 0;
-    while (k < n->cells && role_of(n, k) != FLOW_AT_DRAIN)
-        k++;
-    return k;
 }
 
 /* Gives a crossing the head of the first box that the middle of a side lies in. */
 static void take_head(net *n, tl_vec3 middle, uint32_t crossing)
 {
     const tl_element_batch *b = n->b;
-    for (size_t k = 0; k < n->cells && role_of(n, k) == FLOW_AT_HEAD; k++)
+    for (size_t i = 0; i < n->head_count; i++) {
+        const uint32_t k = n->head_row[i];
         if ((n->head[crossing] == 0 || n->head[crossing] > k + 1) &&
             flow_in_box(node_at(b, b->start[k]), node_at(b, b->start[k] + 1), middle)) {
-            n->head[crossing] = (uint32_t)k + 1;
+            n->head[crossing] = k + 1;
             n->open[crossing] = 1;
             n->given[crossing] = n->p->unit_weight * b->element_state[FLOW_HEAD][k] - n->base;
         }
+    }
 }
 
 /* Fills in the cell of element e. false: out of memory. */
-static bool add_cell(net *n, size_t e, size_t first_drain)
+static bool add_cell(net *n, size_t e)
 {
     const tl_element_batch *b = n->b;
     const cell c = cell_of(n, e);
@@ -309,16 +310,13 @@ static bool add_cell(net *n, size_t e, size_t first_drain)
     n->x[e] = (made ? n->p->unit_weight * head : n->p->unit_weight * height_of(n, &c) + own / area) - n->base;
     n->closed[e] = dry;
     b->element_state[FLOW_AREA][e] = c.area;
-    return dry || add_drains(n, e, &c, first_drain);
+    return dry || add_drains(n, e, &c);
 }
 
 /* The least and largest head lie about it. */
 static double base_of(const net *n)
 {
-    for (size_t k = 0; k < n->cells; k++)
-        if (role_of(n, k) == FLOW_AT_HEAD)
-            return n->p->unit_weight * n->b->element_state[FLOW_HEAD][k];
-    return 0;
+    return n->head_count > 0 ? n->p->unit_weight * n->b->element_state[FLOW_HEAD][n->head_row[0]] : 0;
 }
 
 static bool build(net *n)
@@ -326,11 +324,10 @@ static bool build(net *n)
     if (!make_room(n))
         return false;
     n->base = base_of(n);
-    const size_t first_drain = find_drains(n);
     bool enough = true;
     for (size_t e = 0; e < n->cells && enough; e++)
         if (is_joint(n, e))
-            enough = add_cell(n, e, first_drain);
+            enough = add_cell(n, e);
     return enough;
 }
 
@@ -621,22 +618,31 @@ static TL_PRINTF(3, 4) tl_status refuse(tl_report *report, tl_status status, con
     return status;
 }
 
-/* When pressures were found last, s; -1: never. */
-static double last_time(const tl_element_batch *b)
+/* Time since pressures were found last, s; 0: never. */
+static double time_since(const net *n)
 {
+    const double *time = n->b->element_state[FLOW_TIME];
     double last = -1;
-    for (uint32_t e = 0; e < b->count; e++)
-        last = fmax(last, b->element_state[FLOW_TIME][e]);
-    return last;
+    for (size_t e = 0; e < n->cells; e++)
+        last = fmax(last, time[e]);
+    return last < 0 ? 0 : n->b->time - last;
+}
+
+/* Whether some element has not been solved yet: one that was placed now. */
+static bool is_new(const net *n)
+{
+    bool some = false;
+    for (size_t e = 0; e < n->cells; e++)
+        some = some || n->b->element_state[FLOW_TIME][e] < 0;
+    return some;
 }
 
 static tl_status solve(net *n, tl_report *report)
 {
     if (!build(n))
         return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
-    const double last = last_time(n->b);
-    n->step = n->p->steady || last < 0 ? 0 : n->b->time - last;
-    n->flows = n->p->steady || last < 0 || n->step > 0;
+    n->step = n->p->steady ? 0 : time_since(n);
+    n->flows = n->p->steady || n->step > 0 || is_new(n);
     if (n->p->steady &&
         !flow_find_closed(n->cells, n->first, n->crossing, n->crossings, n->open, n->drained, n->closed))
         return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
