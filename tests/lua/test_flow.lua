@@ -149,6 +149,24 @@ for _, of in ipairs { "heads", "drains" } do -- they are where they were: about 
     check.near(r[of][1].flow / whole[of][1].flow, 1, 0.2)
 end
 
+-- A drain that is as wide as the parts of a joint that is cut takes all that comes: the head there is that of the drain.
+local wide = talus.model { gravity = { 0, 0, 0 } }
+wide:generate("box", { min = { 0, 0, -1 }, max = { 8, 1, 0 }, density = 2500 })
+wide:generate("box", { min = { 0, 0, 0 }, max = { 8, 1, 1 }, density = 2500 })
+wide:blocks():fix()
+wide:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 60 })
+wet(wide, { heads = { { inside = edge(0, 0), head = 5 } }, joints = "*", drains = { { { 5.5, 0.5, -1 }, { 5.5, 0.5, 1 }, 0.5 } } })
+for x = 1, 7 do
+    wide:generate("joint", { joint = "W", dip = 90, dip_direction = 90, origin = { x, 0, 0 } })
+end
+wide:cycle(1)
+local lowest = math.huge
+for _, joint in ipairs(wide:flow().joints) do
+    lowest = math.min(lowest, math.abs(joint.nodes[1].rest[3]) < 1e-9 and joint.head or math.huge)
+end
+check.near(lowest, 0, 0.02)
+check.near(-wide:flow().drains[1].flow / wide:flow().heads[1].flow, 1, 1e-9)
+
 -- So it is where blocks have slid, and joints are found again.
 local slid = talus.model { gravity = { 0, 0, 0 } }
 slid:generate("box", { min = { 0, 0, -1 }, max = { 8, 1, 0 }, density = 2500, group = "floor" })

@@ -33,10 +33,9 @@
  * and bears no pressure. */
 #include "flow.h"
 
-/* Tolerance: residual of the equations over that of the heads, where iterations end. Test: lua/test_flow. */
-#define CONVERGED 1e-10
-/* Tolerance: the same of steps in time, where what is left over is water that is lost. Test: lua/test_stored_flow. */
-#define STEP_CONVERGED 1e-13
+/* Tolerance: residual of the equations over that of the heads, where iterations end. What is left over is water that is
+ * lost, and apertures that differ a hundredfold make it a millionfold larger. Test: lua/test_flow. */
+#define CONVERGED 1e-13
 /* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
 #define MOST_ITERATIONS 20
 
@@ -46,7 +45,8 @@
 /* Limit: the time since the last call over its shortest part. */
 #define MOST_PARTS 1048576.0
 
-/* Limit: ratio of the radii of a drain, of which `place` refuses smaller ones: joints that are cut become smaller. */
+/* Tolerance: least ratio of the radii of a drain. `place` refuses smaller ones, but joints that are cut become smaller.
+ * Test: lua/test_flow. */
 #define LEAST_RATIO 1.05
 
 /* A drain in a cell. */
@@ -412,14 +412,14 @@ static void still(net *n)
 }
 
 /* Conjugate gradients. false: they do not converge. */
-static bool iterate(net *n, double converged)
+static bool iterate(net *n)
 {
     const double wanted = scaled_product(n, n->r, n->r);
     multiply(n, n->x, n->y);
     for (size_t e = 0; e < n->cells; e++)
         n->r[e] = n->diagonal[e] > 0 ? n->r[e] - n->y[e] : 0;
     double now = scaled_product(n, n->r, n->r);
-    const double end = converged * converged * fmax(wanted, now), most = MOST_ITERATIONS * (double)n->cells + 1000;
+    const double end = CONVERGED * CONVERGED * fmax(wanted, now), most = MOST_ITERATIONS * (double)n->cells + 1000;
     for (size_t e = 0; e < n->cells; e++)
         n->way[e] = n->diagonal[e] > 0 ? n->r[e] / n->diagonal[e] : 0;
     for (double i = 0; now > end; i++) {
@@ -450,7 +450,7 @@ static bool take_step(net *n, double h)
         n->diagonal[e] = n->linked[e] + store;
         n->r[e] = n->source[e] + store * n->x[e];
     }
-    return iterate(n, h < INFINITY ? STEP_CONVERGED : CONVERGED);
+    return iterate(n);
 }
 
 /* Largest difference of the potentials of cells, heads and drains. */
