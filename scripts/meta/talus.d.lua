@@ -543,8 +543,8 @@ function talus.help(topic) end
 ---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
 ---@field heads? talus.Vector[] m: Three points a head: least and largest corner of a box, and {head, 0, 0}.
 ---@field drains? talus.Vector[] m: Three points a drain: both ends, and {radius, 0, 0}.
----@field every? integer in [1, 1e+09], default 100: Steps between two solutions of steady flow.
----@field steady? boolean default true: Whether water is in balance, or also stored, with every = 1.
+---@field every? integer in [0, 1e+09], default 0: Steps between two solutions; 0: 100 of steady flow, 1 of stored water. With n of stored water the time step is n times shorter where walls move.
+---@field steady? boolean default true: Whether water is in balance, or also stored.
 
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
@@ -675,6 +675,9 @@ function Blocks:reset_displacement() end
 ---@field law_number integer place of its law in model:laws(), or 0
 ---@field points { position: talus.Vector, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point
 ---@field states table<string, number|string|boolean|talus.Vector> the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
+---@field pressure number Pa, mean pressure of the water between its faces; nil, and NaN in lists, where it is dry
+---@field aperture number m, hydraulic aperture of the joint between its faces; nil without water that flows there
+---@field flow number m3/s, through the joint between its faces; likewise
 local Contact = {}
 
 --- A selection of contacts: a snapshot, in ascending order of their blocks.
@@ -2036,7 +2039,7 @@ function Model:elements(options) end
 ---@field heads? { inside: { min: talus.Vector, max: talus.Vector }, min: talus.Vector, max: talus.Vector, head: number }[] likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box
 ---@field drains? (talus.Vector|number)[][] likewise: holes of a radius, m, in which the pressure is 0
 ---@field steady? boolean likewise: true, when left out, for water in balance; false: joints store water
----@field every? number likewise: steps between two solutions of steady flow; 100 when left out
+---@field every? number likewise: steps between two solutions; 100 of steady flow and 1 of stored water when left out
 ---@field bulk? number likewise: bulk modulus of water that is stored, Pa; 2e9 when left out
 ---@field initial_head? number likewise: head at the beginning where flow is not steady; without it pressure is 0, m
 ---@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out

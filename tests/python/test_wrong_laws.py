@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Laws and dampings with one mistake each, which `talus check` refuses with a sentence that names it.
+"""Laws, dampings and elements with one mistake each, which `talus check` refuses with a sentence that names it.
 
     tests/python/test_wrong_laws.py BUILD_FOLDER
 
 Each is one that comes with Talus, or a template, with a change of one place of its text. What is told must be of the check that
-the table names, and have its word; those without a change, and the laws of tests/plugins, pass. Of the mistakes one in TALUS_TEST_SHARE
-is tried."""
+the table names, and have its word; those without a change, and those of tests/plugins and tests/elements, pass. Of the mistakes
+one in TALUS_TEST_SHARE is tried."""
 import concurrent.futures
 import os
 import pathlib
@@ -23,6 +23,7 @@ COHESIVE, WEAKENING, ROUGH = "laws/cohesive", "laws/slip_weakening", "laws/barto
 YIELDING, RATE, TEMPLATE = "laws/continuously_yielding", "laws/rate_state", "template/law"
 LOCAL, COMBINED, VISCOUS = "damping/local", "damping/combined", "damping/viscous"
 ADAPTIVE, KINETIC, DRAG = "damping/adaptive", "damping/kinetic", "template/damping"
+PADS = "../tests/elements"
 
 PLAIN = "batch->flags[i] = normal < 0 ? TL_POINT_OPEN : moved > 0 ? TL_POINT_SLIPPING : 0;"
 HEAT = "batch->dissipated[i] = fmax(0, moved * (along + f_s) / 2);"
@@ -33,10 +34,12 @@ WRONG = [
     # energies
     ("heat is negative", TEMPLATE, HEAT, HEAT.replace("fmax(0,", "-fmax(0,"), "heat", "must not be negative"),
     ("heat of slip is left out", TEMPLATE, HEAT, "batch->dissipated[i] = 0;", "balance", "lost in steps without heat"),
-    ("heat is twice what it is", TEMPLATE, HEAT, HEAT.replace(" / 2", ""), "balance", "made in steps with heat|dissipated"),
+ *  ("heat is twice what it is", TEMPLATE, HEAT, HEAT.replace(" / 2", ""), "balance", "made in steps with
+ * heat|dissipated"),
     ("heat by the force after the step only", TEMPLATE, HEAT, HEAT.replace("(along + f_s) / 2", "f_s"), "balance",
      "dissipated"),
-    ("heat of lift by the force after the step", COULOMB, "0.5 * (c.f_n[i] + normal) * lift", "normal * lift", "balance",
+ *  ("heat of lift by the force after the step", COULOMB, "0.5 * (c.f_n[i] + normal) * lift", "normal * lift",
+ * "balance",
      "dissipated"),
     ("slip counts less along one axis", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;",
      "slip[i] += f_n > 0 ? moved * (batch->f_s[0][i] > 0 ? 1 : 0.2) : 0;", "turned", "slip"),
@@ -44,9 +47,11 @@ WRONG = [
     ("stored without its shear part", TEMPLATE, STORED, "f_n * f_n / (2 * p->kn * area)", "balance", "stored"),
     ("stored without its normal part", TEMPLATE, STORED, "f_s * f_s / (2 * stiffness)", "presses", "stored"),
     ("stored without a half", TEMPLATE, "(2 * p->kn * area)", "(p->kn * area)", "presses", "stored"),
-    ("stored by the other stiffness", TEMPLATE, "f_s * f_s / (2 * stiffness)", "f_s * f_s / (2 * p->kn * area)", "balance",
+ *  ("stored by the other stiffness", TEMPLATE, "f_s * f_s / (2 * stiffness)", "f_s * f_s / (2 * p->kn * area)",
+ * "balance",
      "stored"),
-    ("heat is added to what was there", TEMPLATE, "batch->dissipated[i] = fmax", "batch->dissipated[i] += fmax", "reads",
+ *  ("heat is added to what was there", TEMPLATE, "batch->dissipated[i] = fmax", "batch->dissipated[i] += fmax",
+ * "reads",
      "energies"),
     ("stored is not written", TEMPLATE, "        if (batch->stored)\n", "        if (0)\n", "reads", "energies"),
     ("what lifts the walls is heat too", COULOMB, "0.5 * (c.f_n[i] + normal) * lift : 0", "0 : 0", "balance",
@@ -55,17 +60,21 @@ WRONG = [
      "dissipated"),
     ("dilation above friction is not refused", COULOMB, "if (p->dilation > p->friction)\n", "if (0)\n", "closed cycle",
      "come out"),
-    ("a bond that snaps turns nothing to heat", TENSILE, "work + (held - holds) * tl_law_snap_work(grip + stretched,", "work + 0 * tl_law_snap_work(grip + stretched,",
+ *  ("a bond that snaps turns nothing to heat", TENSILE, "work + (held - holds) * tl_law_snap_work(grip + stretched,",
+ * "work + 0 * tl_law_snap_work(grip + stretched,",
      "balance", "lost"),
     ("what pulls beside what presses is not stored", TENSILE, "batch->stored[begin + i] += more[i];", ";", "presses",
      "stored"),
-    ("what pulls beside what presses is not stored, elastic", ELASTIC, ".f_n0[i]) * apart[i];", ".f_n0[i]) * 0;", "presses",
+ *  ("what pulls beside what presses is not stored, elastic", ELASTIC, ".f_n0[i]) * apart[i];", ".f_n0[i]) * 0;",
+ * "presses",
      "stored"),
     ("damage gives twice the heat", COHESIVE, "double bond = broken * (", "double bond = 2 * broken * (", "balance",
      "dissipated"),
-    ("damage without heat", COHESIVE, "broken > 0 ? bond - work - kept : sliding", "broken > 0 ? 0 : sliding", "balance",
+ *  ("damage without heat", COHESIVE, "broken > 0 ? bond - work - kept : sliding", "broken > 0 ? 0 : sliding",
+ * "balance",
      "lost"),
-    ("friction of what is broken without heat", COHESIVE, "bond - work - kept : sliding", "bond - work - kept : 0", "balance",
+ *  ("friction of what is broken without heat", COHESIVE, "bond - work - kept : sliding", "bond - work - kept : 0",
+ * "balance",
      "lost"),
     ("a wrong half of the slip's work", RATE, "double heat = mean * (shear - left) / law.ks;",
      "double heat = 0.5 * mean * (shear - left) / law.ks;", "balance", "lost"),
@@ -80,7 +89,8 @@ WRONG = [
     ("the area is left out of a spring", TEMPLATE, "double normal = p->kn * area * batch->closure[i]",
      "double normal = p->kn * batch->closure[i]", "area", "twice the area"),
     ("it pulls", TEMPLATE, "double f_n = fmax(0, normal)", "double f_n = normal", "pulls", "across a gap|pulls"),
-    ("lift is not written", COHESIVE, "    tl_law_lift(batch, law->kn, NULL, lift);\n", "", "pulls", "leaves lift unwritten"),
+ *  ("lift is not written", COHESIVE, "    tl_law_lift(batch, law->kn, NULL, lift);\n", "", "pulls", "leaves lift
+ * unwritten"),
     ("hold is not written", COULOMB, "tl_law_hold_none(batch, hold);", ";", "pulls", "hold = (nan|-nan)"),
     ("it does not press", TEMPLATE, "double f_n = fmax(0, normal)", "double f_n = fmin(0, normal)", "pulls", "press"),
     ("twice the stiffness is told of a linear law", TEMPLATE, "*kn = p->kn;", "*kn = 2 * p->kn;", "presses",
@@ -109,11 +119,13 @@ WRONG = [
     # shear force
     ("shear goes with the motion", TEMPLATE, "batch->f_s[k][i] - stiffness * batch->du_s[k][i]",
      "batch->f_s[k][i] + stiffness * batch->du_s[k][i]", "closed cycle", "come out"),
-    ("one direction of shear is left out", TEMPLATE, "f[0] * f[0] + f[1] * f[1] + f[2] * f[2]", "f[0] * f[0] + f[1] * f[1]",
+ *  ("one direction of shear is left out", TEMPLATE, "f[0] * f[0] + f[1] * f[1] + f[2] * f[2]", "f[0] * f[0] + f[1] *
+ * f[1]",
      "turned", "turned point"),
     ("cohesion without the area", COULOMB, "double limit = total < 0 ? 0 : cohesion * c.area[i] + normal * tangent;",
      "double limit = total < 0 ? 0 : cohesion + normal * tangent;", "area|one by one", "area|alone"),
-    ("an open point keeps its shear", TEMPLATE, "f_n > 0 ? trial - stiffness * moved : 0;", "trial;", "balance", "made"),
+ *  ("an open point keeps its shear", TEMPLATE, "f_n > 0 ? trial - stiffness * moved : 0;", "trial;", "balance",
+ * "made"),
     ("slip without an end", TEMPLATE, "trial > limit * (1 + 1e-12)", "trial > limit * (1 - 1e-3)", "no motion",
      "without any motion|never comes to rest"),
     ("shear out of the plane", TEMPLATE, "trial > 0 ? f[k] * (f_s / trial) : 0;",
@@ -133,35 +145,44 @@ WRONG = [
      "slip[i] += f_n > 0 ? moved + 1e-9 * batch->state[1][i] : 0;", "reads", "does not declare"),
     ("the state behind all that a law may have is read", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;",
      "slip[i] += f_n > 0 ? moved + 1e-9 * batch->state[8][i] : 0;", "reads", "does not declare"),
-    ("it reads behind the batch", TEMPLATE, "fmax(0, 1 - slip[i] / p->distance)", "fmax(0, 1 - slip[i + 1] / p->distance)",
+ *  ("it reads behind the batch", TEMPLATE, "fmax(0, 1 - slip[i] / p->distance)", "fmax(0, 1 - slip[i + 1] /
+ * p->distance)",
      "one by one|reads", "alone|behind"),
-    ("slip is forgotten", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;", "slip[i] = f_n > 0 ? moved : 0;", "steps|no motion",
+ *  ("slip is forgotten", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;", "slip[i] = f_n > 0 ? moved : 0;", "steps|no
+ * motion",
      "steps|motion"),
     ("slip is not looked at", TEMPLATE, "fmax(0, 1 - slip[i] / p->distance)", "1", "states", "slip"),
     ("slip is never written", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;", ";", "states", "never written"),
-    ("slip goes with the area", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;", "slip[i] += f_n > 0 ? moved * area : 0;", "area",
+ *  ("slip goes with the area", TEMPLATE, "slip[i] += f_n > 0 ? moved : 0;", "slip[i] += f_n > 0 ? moved * area : 0;",
+ * "area",
      "a state"),
-    ("a bond that was lost is whole again", TENSILE, "double before = bond[i], near", "double before = 1, near", "flags",
+ *  ("a bond that was lost is whole again", TENSILE, "double before = bond[i], near", "double before = 1, near",
+ * "flags",
      "whole again"),
-    ("a bond breaks that is not pulled", TENSILE, "after = fibre < -peak->tension", "after = fibre > -peak->tension", "flags",
+ *  ("a bond breaks that is not pulled", TENSILE, "after = fibre < -peak->tension", "after = fibre > -peak->tension",
+ * "flags",
      "neither pulled nor sheared"),
     ("one axis is no motion", YIELDING, "c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i];\n        sum",
      "c.du_y[i] * c.du_y[i];\n        sum", "one by one", "alone"),
-    ("slip of weakening is not looked at", WEAKENING, "t->slip[i] = slip[i];\n    }", "t->slip[i] = 0;\n    }", "states|steps|no motion",
+ *  ("slip of weakening is not looked at", WEAKENING, "t->slip[i] = slip[i];\n    }", "t->slip[i] = 0;\n    }",
+ * "states|steps|no motion",
      "slip|steps|without any motion"),
     ("the energy of yielding is not one of the area", YIELDING,
      "held[i] = kept == t->had[i] ? held[i] : c.area[i] * kept;", "held[i] = kept == t->had[i] ? held[i] : kept;",
      "area|balance", "area|stored|dissipated"),
-    ("a state changes though it is said that none does", COULOMB, "->dilation.tangent == 0;", "->dilation.tangent >= 0;", "states",
+ *  ("a state changes though it is said that none does", COULOMB, "->dilation.tangent == 0;", "->dilation.tangent >=
+ * 0;", "states",
      "stateless"),
     # parameters and flags
     ("cohesion is not used", COULOMB, ".cohesion = p->cohesion,", ".cohesion = 0,", "parameters", "cohesion"),
-    ("the limit of dilation is not used", TENSILE, "p->dilation_limit),\n", "INFINITY),\n", "parameters", "dilation_limit"),
+ *  ("the limit of dilation is not used", TENSILE, "p->dilation_limit),\n", "INFINITY),\n", "parameters",
+ * "dilation_limit"),
     ("healing_time is not used", WEAKENING, "tl_lane_exp(-batch->dt / law->healing_time)", "0.5", "parameters",
      "healing_time|no effect"),
     ("the slip law is not one of the rate", RATE, "update_lanes(law, batch, begin, lanes, SLIP);",
      "update_lanes(law, batch, begin, lanes, AGING);", "parameters", "evolution"),
-    ("what is open is not flagged", TEMPLATE, "normal < 0 ? TL_POINT_OPEN : moved", "moved", "flags", "not flagged as open"),
+ *  ("what is open is not flagged", TEMPLATE, "normal < 0 ? TL_POINT_OPEN : moved", "moved", "flags", "not flagged as
+ * open"),
     ("slip is not flagged", TEMPLATE, "moved > 0 ? TL_POINT_SLIPPING : 0", "0", "flags", "slipping"),
     ("what is closed is flagged as open", TEMPLATE, "normal < 0 ? TL_POINT_OPEN", "normal > 0 ? TL_POINT_OPEN", "flags",
      "flagged as open"),
@@ -175,25 +196,46 @@ WRONG = [
     ("a body at rest is pushed", LOCAL, "double forward = velocity[i] > 0 ? -size : 0;",
      "double forward = velocity[i] >= 0 ? -size : 0;", "rests", "at rest"),
     ("the time step is too long", LOCAL, "return 1 / sqrt(1 + p->alpha);", "return 1;", "step factor", "sqrt"),
-    ("the step factor is one of another root", COMBINED, "return 1 / sqrt(1 + p->alpha);", "return 1 / sqrt(1 + p->alpha / 2);",
+ *  ("the step factor is one of another root", COMBINED, "return 1 / sqrt(1 + p->alpha);", "return 1 / sqrt(1 + p->alpha
+ * / 2);",
      "step factor", "sqrt"),
     ("alpha is negative", VISCOUS, "= p->alpha;", "= -p->alpha;", "brakes", "gives energy"),
     ("alpha is not used", VISCOUS, "= p->alpha;", "= 0.5;", "parameters", "alpha"),
     ("alpha grows with the mass", VISCOUS, "= p->alpha;", "= p->alpha * batch->mass[i];", "masses", "twice the mass"),
-    ("the force of the step before is not looked at", COMBINED, "change = force[i] - before[i];", "change = force[i];", "reads",
+ *  ("the force of the step before is not looked at", COMBINED, "change = force[i] - before[i];", "change = force[i];",
+ * "reads",
      "step before"),
     ("drag without the mass", DRAG, "fmin(c * inertia[i] *", "fmin(c *", "masses", "twice the mass"),
-    ("drag of one component is left out", DRAG, "        out[2][i] = factor * z;\n", "", "turned", "turned to other axes"),
-    ("the limit of the drag without the mass", DRAG, "moving[i] / batch->dt;", "1 / batch->dt;", "masses", "twice the mass"),
+ *  ("drag of one component is left out", DRAG, "        out[2][i] = factor * z;\n", "", "turned", "turned to other
+ * axes"),  ("the limit of the drag without the mass", DRAG, "moving[i] / batch->dt;", "1 / batch->dt;", "masses",
+ * "twice the mass"),
     ("the turning is not damped", DRAG, "    drag(p->spin_drag, batch, batch->inertia, batch->moving_inertia, "
      "batch->angular_velocity, batch->damping_moment);\n", "", "parameters", "spin_drag"),
-    ("the bound of the servo is not used", ADAPTIVE, "clamp(alpha, minimum < maximum ? minimum : maximum, maximum)", "alpha",
+ *  ("the bound of the servo is not used", ADAPTIVE, "clamp(alpha, minimum < maximum ? minimum : maximum, maximum)",
+ * "alpha",
      "parameters|finite", "imum|finite"),
-    ("a servo with the wrong sign", ADAPTIVE, "alpha *= clamp(", "alpha *= -clamp(", "parameters|brakes", "energy|target"),
+ *  ("a servo with the wrong sign", ADAPTIVE, "alpha *= clamp(", "alpha *= -clamp(", "parameters|brakes",
+ * "energy|target"),
     ("a servo that writes to a state of another", ADAPTIVE, "    *state[0] = clamp(alpha",
      "    state[1][0] += alpha;\n    *state[0] = clamp(alpha", "writes", "does not declare"),
     ("a damping that changes its states for each batch", KINETIC, ".update = tl_update_alpha_state,",
      ".update = tl_update_alpha_state, .begin = 0,", "states", "never written"),
+    # what elements do together
+ *  ("pads: the first one counts for all", PADS, "= sum / area;", "= own_pressure(self, b, 0);", "together", "opposite
+ * order"),  ("pads: each one has what those before it have", PADS, "= sum / area;", "= (sum -= own_pressure(self, b,
+ * e)) / area;",
+     "together", "opposite order"),
+ *  ("pads: pressure is added to what was there", PADS, "[SHARED][e] = sum / area;", "[SHARED][e] += sum / area;",
+ * "together",
+     "again at the same time"),
+ *  ("pads: a state that is not finite", PADS, "= sum / area;", "= sum / (area - area);", "finite", "together.* not
+ * finite"),  ("pads: another result at each call", PADS, "double sum = 0, area = 0;", "static double sum; double area =
+ * 0;", "repeats",
+     "together"),
+ *  ("pads: it fails", PADS, "sum / area;\n    return TL_OK;", "sum / area;\n    return TL_E_NUMERIC;", "runs",
+ * "together.* failed"),
+    ("pads: a number of times counts", PADS, "[SHARED][e] = sum / area;",
+     "[SHARED][e] = b->element_state[SHARED][e] > 0 ? 0 : sum / area;", "together", "again at the same time"),
 ]
 
 faults = []
@@ -238,7 +280,7 @@ def main():
     build = pathlib.Path(sys.argv[1]).resolve()
     right = [path for kind in ("laws/*", "damping/*", "template/law", "template/damping")
              for path in sorted((ROOT / "plugins").glob(kind + "/*.c"))]
-    right += sorted((ROOT / "tests/plugins").glob("*.c"))
+    right += [path for kind in ("plugins", "elements") for path in sorted((ROOT / "tests" / kind).glob("*.c"))]
     with tempfile.TemporaryDirectory() as name, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(name)
         runs = [pool.submit(try_wrong, build, folder, *case) for case in enumerate(WRONG) if case[0] % SHARE == 0]
