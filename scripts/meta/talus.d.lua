@@ -1670,7 +1670,7 @@ function talus.convert(options) end
 ---@param options talus.PlotOptions
 function talus.plot(options) end
 
---- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.
+--- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing.
 ---
 ---     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE")
 ---@param options? table
