@@ -1,10 +1,10 @@
 /* Where wet joints meet (plugins/elements/water/crossings.c): ends that are off, short sides, sides at an angle. */
-#include "../../plugins/elements/water/crossings.c"
-
 #include "check.h"
 
+#include "../../plugins/elements/water/crossings.c"
+
 /* Polygons of four corners or fewer, by x, y, z; a NaN ends one early. */
-static flow_crossings find(const double (*corners)[4][3], size_t count, double slack, size_t *sides)
+static flow_crossings find(const double (*corners)[4][3], size_t count, double slack, size_t *all)
 {
     static tl_vec3 corner[64];
     static uint32_t first[17];
@@ -20,17 +20,17 @@ static flow_crossings find(const double (*corners)[4][3], size_t count, double s
     const flow_polygons of = {corner, first, slacks, count};
     flow_crossings found;
     CHECK(flow_crossings_find(&of, &found));
-    *sides = k;
+    *all = k;
     return found;
 }
 
 /* How many sides, or parts of them, lie at a crossing that is another polygon's, too. */
-static size_t count_shared(const flow_crossings *f, size_t sides)
+static size_t count_shared(const flow_crossings *f, size_t all)
 {
     size_t shared = 0;
-    for (uint32_t i = 0; i < f->first[sides]; i++) {
+    for (uint32_t i = 0; i < f->first[all]; i++) {
         bool same = false;
-        for (uint32_t k = 0; k < f->first[sides]; k++)
+        for (uint32_t k = 0; k < f->first[all]; k++)
             same = same || (i != k && f->piece[i].crossing == f->piece[k].crossing);
         shared += same;
     }
@@ -44,12 +44,12 @@ TEST(ends_within_the_slack_are_one)
                                             {{1.0005, 0, 0}, {2, 0, 0}, {2, -1, 0}, {1.0005, -1, 0}},
                                             {{0, 0, 0}, {0, 0, 1}, {0.9997, 0, 1}, {0.9997, 0, 0}},
                                             {{1.0001, 0, 0}, {1.0001, 0, 1}, {2, 0, 1}, {2, 0, 0}}};
-    size_t sides;
-    flow_crossings f = find(squares, 4, 1e-3, &sides);
-    CHECK_INT(f.first[sides], 16); /* none is cut */
+    size_t all;
+    flow_crossings f = find(squares, 4, 1e-3, &all);
+    CHECK_INT(f.first[all], 16); /* none is cut */
     /* two on the line, one each between neighbours, and eight sides of one polygon */
     CHECK_INT(f.count, 2 + 2 + 8);
-    CHECK_INT(count_shared(&f, sides), 4 + 4);
+    CHECK_INT(count_shared(&f, all), 4 + 4);
     flow_crossings_free(&f);
 }
 
@@ -60,9 +60,9 @@ TEST(short_sides_meet)
                                            {{0.01, 0, 0}, {0.02, 0, 0}, {0.02, -1, 0}, {0.01, -1, 0}},
                                            {{0, 0, 0}, {0, 0, 1}, {0.01, 0, 1}, {0.01, 0, 0}},
                                            {{0.01, 0, 0}, {0.01, 0, 1}, {0.02, 0, 1}, {0.02, 0, 0}}};
-    size_t sides;
-    flow_crossings f = find(strips, 4, 0.004, &sides);
-    CHECK_INT(f.first[sides], 16);
+    size_t all;
+    flow_crossings f = find(strips, 4, 0.004, &all);
+    CHECK_INT(f.first[all], 16);
     CHECK_INT(f.count, 2 + 2 + 8);
     /* the first short sides below and above are at one crossing, the second ones at another */
     CHECK_INT(f.piece[f.first[0]].crossing, f.piece[f.first[11]].crossing);
@@ -76,8 +76,8 @@ TEST(shortest_sides_meet)
 {
     static const double wedges[2][4][3] = {{{0, 0, 0}, {0.01, 0, 0}, {1, -1, 0}, {-1, -1, 0}},
                                            {{0, 0, 0}, {-1, 0, 1}, {1, 0, 1}, {0.01, 0, 0}}};
-    size_t sides;
-    flow_crossings f = find(wedges, 2, 0.008, &sides);
+    size_t all;
+    flow_crossings f = find(wedges, 2, 0.008, &all);
     CHECK_INT(f.count, 7);
     CHECK_INT(f.piece[f.first[0]].crossing, f.piece[f.first[7]].crossing);
     flow_crossings_free(&f);
@@ -89,11 +89,11 @@ TEST(sides_at_an_angle_do_not_meet)
     static const double squares[3][4][3] = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                             {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}},
                                             {{1, 0.0005, 0}, {0.9995, 0, 0}, {2, -1, 0}, {NAN, 0, 0}}};
-    size_t sides;
-    flow_crossings f = find(squares, 3, 1e-3, &sides);
-    CHECK_INT(f.first[sides], 11);
+    size_t all;
+    flow_crossings f = find(squares, 3, 1e-3, &all);
+    CHECK_INT(f.first[all], 11);
     CHECK_INT(f.count, 10);
-    CHECK_INT(count_shared(&f, sides), 2);
+    CHECK_INT(count_shared(&f, all), 2);
     flow_crossings_free(&f);
 }
 
