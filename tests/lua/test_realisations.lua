@@ -496,7 +496,7 @@ end
 
 for _, case in ipairs {
     { {}, "'number' is missing" },
-    { { number = 0 }, "number = 0 is outside [1, 1000000000.0]" },
+    { { number = 0 }, "number = 0 is outside [1, 1000000000]" },
     { { number = 1.5 }, "number = 1.5 must be a whole number" },
     { { number = 3, workers = 300 }, "workers = 300 is outside [1, 256]" },
     { { number = 3, sed = 1 }, "unknown parameter 'sed'; did you mean 'seed'?" },
