@@ -256,6 +256,7 @@ void tl_elements_push(tl_model *m)
 
 /* ---------------------------------------------------------------- stiffness -------------- */
 
+/* What holds two gridpoints to each other is twice as stiff for them as for one that it holds to the ground. */
 void tl_elements_stiffen(tl_model *m, double *damping)
 {
     const struct tl_elements *e = m->elements;
@@ -265,8 +266,8 @@ void tl_elements_stiffen(tl_model *m, double *damping)
         const double all = fabs(share[0]) + fabs(share[1]) + fabs(share[2]) + fabs(share[3]);
         for (int a = 0; a < 4; a++) {
             const uint32_t point = first + e->nodes.point[row][a];
-            m->zones->points.holds[point] += e->nodes.k[row] * all * fabs(share[a]);
-            damping[point] += e->nodes.c[row] * all * fabs(share[a]);
+            m->zones->points.holds[point] += 2 * e->nodes.k[row] * all * fabs(share[a]);
+            damping[point] += 2 * e->nodes.c[row] * all * fabs(share[a]);
         }
     }
 }
@@ -279,6 +280,8 @@ void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
         const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row));
         sum->stiffness.sum += e->nodes.k[row];
         sum->stiffness.r2 += e->nodes.k[row] * arm2;
+        sum->undamped.sum += e->nodes.k[row];
+        sum->undamped.r2 += e->nodes.k[row] * arm2;
         sum->damping.sum += e->nodes.c[row];
         sum->damping.r2 += e->nodes.c[row] * arm2;
     }

@@ -342,8 +342,9 @@ typedef struct tl_damping_ops {
     /* since minor 3; not 0: `begin` and `update` always return TL_OK, as a law's */
     uint32_t never_fails;
     /* [main] since minor 14; may be NULL. Damping of contacts in proportion to their stiffness: *beta, s, >= 0. The
-     * host adds the force beta k A du/dt, normal and along the face, at closed points that do not slip. The stable step
-     * is then shorter by sqrt(1 + l^2) - l, l = beta / step. What cannot pull gets no tension by it. */
+     * host adds the force beta k A du/dt, normal and along the face, at closed points that do not slip. Where
+     * contacts alone hold, the stable step is then shorter by sqrt(1 + l^2) - l, l = beta / step. What cannot pull gets
+     * no tension by it. */
     void (*contact)(const void *self, double *beta);
 } tl_damping_ops;
 
