@@ -3,7 +3,7 @@
 local talus = require "talus"
 local check = require "check"
 
-local STEPS, BLOCKS, OVERLAP, SPEED, SEEDS = 600, 6, 1e-5, 1e-7, 8
+local STEPS, BLOCKS, OVERLAP, SPEED, SEEDS = 500, 6, 1e-5, 1e-7, 5
 
 local function numbers(seed)
     return function()
