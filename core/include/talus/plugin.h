@@ -760,7 +760,8 @@ typedef struct tl_element_ops {
      * the other. It changes states, by which `update` then finds the forces. Of the batch, which holds all elements of
      * the call, du, v, force, stored, lost and given are NULL. Called once they are placed, when they have been placed
      * again, and before `update` in steps of which the number is divisible by `every`. Elements that have got other
-     * parameters by tl_elements_set are calls of their own. */
+     * parameters by tl_elements_set are calls of their own. Elements that are placed again may come in another order:
+     * that must change nothing but rounding. Asked again at the same time and places it must change nothing. */
     tl_status (*together)(const void *self, const tl_element_batch *batch, tl_report *report);
     /* [main] Since 1.15, may be NULL: 1. Steps between two calls of `together`; 0: none in steps. */
     uint32_t (*every)(const void *self);
