@@ -38,7 +38,7 @@ static inline double within(double x, double limit)
     return larger(-limit, smaller(limit, x));
 }
 
-/* Forces of the grout at the present w, and of the steel; `more`, N, is added to the bond, and steel that bears more than
+/* Forces of the grout at the present w, and of the steel. `more`, N, is added to the bond; steel that bears more than
  * `least` bears all. */
 TL_VECTORIZED static void respond_all(chain *c, double more, double least)
 {
@@ -191,7 +191,8 @@ static double go(chain *c, const double *from, const double *step, double part, 
     return along(c, step);
 }
 
-/* A Newton pass from where forces and unbalance are known. Where it goes too far, beyond where the energy along the step is least, it goes back. */
+/* A Newton pass from where forces and unbalance are known. Where it goes too far, beyond where the energy along the
+ * step is least, it goes back. */
 static bool advance(chain *c)
 {
     double step[TL_ELEMENT_NODES], from[TL_ELEMENT_NODES], least = 0, most = 1;
