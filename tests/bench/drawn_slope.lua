@@ -53,6 +53,12 @@ function drawn.build(draw)
             number = math.ceil(REACH / spacing), origin = { LENGTH / 2, WIDTH / 2, (TOE[3] + HEIGHT) / 2 } })
     end
     model:blocks { hidden = true }:show()
+    return model
+end
+
+-- The same between rock: what lies at the sides and the rear is held, so that only the face is free.
+function drawn.build_held(draw)
+    local model = drawn.build(draw)
     model:boundary { xmax = "fixed", ymin = "fixed", ymax = "fixed", zmin = "fixed" }
     return model
 end
