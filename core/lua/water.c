@@ -168,7 +168,8 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .usage = "model:water(\"flow\", {aperture = 2e-4, steady = false}); result = model:flow()",
      .doc =
          "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
-         "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "
+         "given, of tables with flow, m3/s into the rock, and closed, true when it reaches no joint any more; joints, "
+         "the selection of wet joints, with area, aperture, "
          "flow, head and closed; and closed, how many of them reach neither a head nor a drain.",
      .arguments = 0,
      .method = tl_lua_model_flow},

@@ -2056,7 +2056,7 @@ function Model:elements(options) end
 ---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 function Model:water(name, options) end
 
---- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain.
+--- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock, and closed, true when it reaches no joint any more; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain.
 ---
 ---     model:water("flow", {aperture = 2e-4, steady = false}); result = model:flow()
 ---@return { closed: integer, drains: table, heads: table, joints: talus.Elements }

@@ -224,6 +224,21 @@ end
 check.holds(steps[1] == steps[2])
 check.near(steps[3] / steps[1], 0.25, 0.01)
 
+-- A head whose box the joint has left is closed, and nothing comes from it.
+local left = talus.model { gravity = { 0, 0, 0 } }
+left:generate("box", { min = { 0, 0, -1 }, max = { 8, 1, 0 }, density = 2500, group = "floor" })
+left:generate("box", { min = { 0, 0, 0 }, max = { 8, 1, 1 }, density = 2500, group = "top" })
+left:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 0 })
+left:blocks { group = "floor" }:fix()
+left:blocks { group = "top" }:drive { velocity = { 0.1, 0, 0 } }
+wet(left)
+r = left:flow()
+check.holds(not r.heads[1].closed and not r.heads[2].closed and r.heads[1].flow > 0)
+left:timestep { dt = 1e-3 }
+left:cycle(500)
+r = left:flow()
+check.holds(r.heads[1].closed and not r.heads[2].closed and r.heads[1].flow == 0)
+
 -- What is refused changes nothing.
 local bad = rock()
 local function refuse(with, sentence)

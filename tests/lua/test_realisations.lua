@@ -189,6 +189,9 @@ end
 local whole = folder .. "/whole.csv"
 os.remove(whole)
 check.holds(shell("'%s' --quiet '%s' '%s' 1", program, script, whole))
+-- that rows are not made again is said
+check.holds(shell("'%s' '%s' '%s' 1 2>'%s/said'", program, script, whole, folder))
+check.holds(read(folder .. "/said"):find "whole.csv' has 150 rows already, which are not made again")
 
 -- Killed at any moment it goes on, to the same bytes: 100 kills in all, one in ten of them in a short test. The clock of a kill
 -- begins with the first bytes of the file, and has steps that share nothing with that of rows.

@@ -19,15 +19,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Cost only: Newton passes before w is found directly, and after that, against rounding. */
+/* Limit: Newton passes before w is found directly, and after that, against rounding. Test: lua/test_bolts_at_random. */
 #define PASSES 6
-/* Limit: parts of one pass that are tried; the part that is reached is good enough. */
+/* Limit: parts of one pass that are tried; the part that is reached is good enough. Test: lua/test_bolts_at_random. */
 #define SEARCH 12
-/* Constant: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. */
+/* Tolerance: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. Test:
+ * lua/test_bolts_at_random. */
 #define OVERSHOT 0.5
 /* Tolerance: relative to the largest force of the bolt, the unbalance with which the passes end. */
 #define BALANCED 1e-11
-/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. */
+/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. Test: lua/test_bolt. */
 #define ROUNDED 1e-15
 /* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
  * gives the same forces. */

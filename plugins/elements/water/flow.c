@@ -66,7 +66,8 @@ const tl_state flow_state_table[FLOW_STATES] = {
              "through the joint; of a head or drain: into the rock; of stored water the mean since the last solution"),
     TL_STATE(TL_STATE_WHOLE, "head", "m", "mean head"),
     TL_STATE(TL_STATE_WHOLE, "role", "", "0: a wet joint, 1: a head, 2: a drain", .transfer = TL_TRANSFER_RESET),
-    TL_STATE(TL_STATE_WHOLE, "closed", "", "1: its network reaches neither a head nor a drain"),
+    TL_STATE(TL_STATE_WHOLE, "closed", "",
+             "1: its network reaches neither a head nor a drain; of a head or drain: it reaches no joint"),
     TL_STATE(TL_STATE_WHOLE, "time", "s", "of its pressures; -1: it has none yet")};
 
 /* ---------------------------------------------------------------- geometry --------------- */

@@ -590,6 +590,21 @@ static void give_flows(net *n)
     }
 }
 
+/* Marks heads and drains that reach no joint. */
+static void mark_ends(net *n)
+{
+    double *const closed = n->b->element_state[FLOW_CLOSED];
+    for (size_t i = 0; i < n->head_count; i++)
+        closed[n->head_row[i]] = 1;
+    for (size_t i = 0; i < n->drain_count; i++)
+        closed[n->drain_row[i]] = 1;
+    for (size_t c = 0; c < n->crossings; c++)
+        if (n->head[c])
+            closed[n->head[c] - 1] = 0;
+    for (size_t k = 0; k < n->hits; k++)
+        closed[n->drain[k].drain] = 0;
+}
+
 static void give_all(net *n)
 {
     const tl_element_batch *b = n->b;
@@ -598,6 +613,7 @@ static void give_all(net *n)
         give_flows(n);
     }
     meet(n, n->x, false);
+    mark_ends(n);
     for (size_t e = 0; e < n->cells; e++) {
         b->element_state[FLOW_TIME][e] = b->time;
         if (!is_joint(n, e))
