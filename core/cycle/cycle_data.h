@@ -206,7 +206,6 @@ struct tl_cycle {
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
     tl_settling settling;
-    bool only_stops;          /* a relaxation makes no leaps; not saved */
     struct tl_secant *secant; /* of each contact, while there are leaps: secants.c */
     size_t secant_count, secant_capacity;
     struct tl_conjugate *conjugate; /* of each body, while there are leaps of many: conjugate.c */

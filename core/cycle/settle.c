@@ -431,8 +431,6 @@ static bool begin_leaps(tl_model *m)
     tl_settling *s = &c->settling;
     if (s->stops > 0)
         s->stops--;
-    if (c->only_stops)
-        return false;
     const bool secants = goes_by_secants(m);
     if (s->stops > 0 || !(c->sums.worst_ratio < (secants ? NEAR_REST : MANY_NEAR_REST)) || !may_leap(m) ||
         tl_loads_lag(m) || s->carried >= MOST_CARRIED)
