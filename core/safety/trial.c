@@ -1,7 +1,7 @@
 /* trial.c - whether a model comes to rest with its strengths divided by a factor.
  *
- * A copy of the model comes to rest with its strengths raised by 1 / TL_TRIALS_LEAST. Elastic joints settle then, and nothing
- * slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
+ * A copy of the model comes to rest with its strengths raised by 1 / TL_TRIALS_LEAST. Elastic joints settle then, and
+ * nothing slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
  * (cycle/relax.c) or something moves on.
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
@@ -21,7 +21,7 @@
  *
  * A copy with stiffer joints begins as the model was cut (safety/put_back.c), where that may be.
  *
- * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone far. While joints settle and
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone SUSPECT u. While joints settle and
  * blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
  *
  * Where contacts chatter, forces need thousands of steps to balance while nothing moves. So a trial also rests in which
@@ -57,12 +57,8 @@
 #define RESTS 1e-4
 /* Tolerance: local unbalanced force ratio above which a model that moves is not at rest. */
 #define MOVES 1e-2
-/* Tolerance: way over u from which on a body is watched. */
+/* Tolerance: way over u from which on a body is watched, and a relaxation's verdict counts. */
 #define SUSPECT 10.0
-/* Tolerance: way over u, or if less over the radius of the largest body, from which on a relaxation's verdict counts.
- * In cut rock blocks have slipped by 15 u, a hundredth of their size, and stood still. */
-#define CERTAIN 30.0
-#define CERTAIN_SIZE 0.05
 /* Tolerance: way over u from which on a body fails anyway. */
 #define FAR 300.0
 /* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
@@ -72,10 +68,10 @@
 #define STIFFER 10.0
 #define GROWN 2.0
 #define STIFFEST 1000.0
-/* Tolerance: u over the radius of the largest body above which joints are made stiffer. Test: lua/test_safety. */
+/* Tolerance: u over the radius of the largest body above which joints are made stiffer. Test: lua/test_safety_rock. */
 #define SOFT 1e-4
 /* Tolerance: way over the radius of the largest body up to which blocks have only settled, and may go back to where
- * they were cut. Test: lua/test_safety. */
+ * they were cut. Test: lua/test_safety_rock. */
 #define SETTLED 0.05
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
@@ -83,7 +79,8 @@
 #define CAUGHT 0.03
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
-/* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests. */
+/* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests.
+ * Test: lua/test_safety_rock. */
 #define STILL 0.005
 #define STILLS 4
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
@@ -404,11 +401,10 @@ static double largest_radius(const tl_model *m)
 static bool confirmed(const watch *w, const tl_model *copy, tl_id failing)
 {
     const double settles = w->t->measured ? w->t->settles : settles_now(copy);
-    const double least = fmax(SUSPECT * settles, fmin(CERTAIN * settles, CERTAIN_SIZE * largest_radius(copy)));
     bool far = copy->cycle->fails_strained;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         if (copy->bodies.id[body] == failing)
-            far = far || gone_of(w, copy, body) > least;
+            far = far || gone_of(w, copy, body) > SUSPECT * settles;
     return far;
 }
 
