@@ -17,7 +17,15 @@
 #include <talus/talus.h>
 #include <talus/workers.h>
 
-static tl_status check_number(const tl_trials *t, const char *name, double value, bool good, const char *allowed)
+/* What is asked, and the answer: which laws are divided. */
+typedef struct question {
+    const char *what; /* begins sentences */
+    tl_model *asked;
+    tl_safety options;
+    uint8_t *which; /* of the laws */
+} question;
+
+static tl_status check_number(const question *t, const char *name, double value, bool good, const char *allowed)
 {
     char text[TL_NUMBER_TEXT];
     tl_number_text(value, text);
@@ -25,14 +33,14 @@ static tl_status check_number(const tl_trials *t, const char *name, double value
                 : tl_fail(&t->asked->error, TL_E_ARGUMENT, "%s: %s = %s must be %s", t->what, name, text, allowed);
 }
 
-static tl_status check_options(const tl_trials *t)
+static tl_status check_options(const question *t)
 {
     const tl_safety *o = &t->options;
     char from[TL_NUMBER_TEXT], to[TL_NUMBER_TEXT];
     tl_number_text(o->from, from);
     tl_number_text(o->to, to);
     tl_status status =
-        check_number(t, "from", o->from, o->from >= TL_TRIALS_LEAST && isfinite(o->from), "at least 0.05");
+        check_number(t, "from", o->from, o->from >= TL_LEAST_FACTOR && isfinite(o->from), "at least 0.05");
     if (status == TL_OK)
         status = check_number(t, "to", o->to, isfinite(o->to), "a finite number");
     if (status == TL_OK && !(o->from < o->to))
@@ -54,7 +62,7 @@ static tl_status check_options(const tl_trials *t)
 }
 
 /* Marks the laws of one name. */
-static tl_status mark_laws(tl_trials *t, const char *name)
+static tl_status mark_laws(question *t, const char *name)
 {
     tl_model *m = t->asked;
     tl_tag tag;
@@ -76,7 +84,7 @@ static tl_status mark_laws(tl_trials *t, const char *name)
 }
 
 /* Names the laws that have no strengths, when none has. */
-static tl_status say_unmarked(const tl_trials *t)
+static tl_status say_unmarked(const question *t)
 {
     tl_model *m = t->asked;
     char names[200] = "";
@@ -96,7 +104,7 @@ static tl_status say_unmarked(const tl_trials *t)
                    t->what, names);
 }
 
-static tl_status choose_laws(tl_trials *t)
+static tl_status choose_laws(question *t)
 {
     const tl_model *m = t->asked;
     const tl_safety *o = &t->options;
@@ -125,7 +133,7 @@ static tl_status choose_laws(tl_trials *t)
 }
 
 /* Refuses what has no factor: nothing that is free, or something that is driven. */
-static tl_status check_bodies(const tl_trials *t)
+static tl_status check_bodies(const question *t)
 {
     const tl_model *m = t->asked;
     size_t free = 0;
@@ -144,7 +152,7 @@ static void no_job(void *user, uint64_t job, const void **data, size_t *size)
 }
 
 /* Refuses processes where there can be none, before any work is done. */
-static tl_status check_processes(const tl_trials *t)
+static tl_status check_processes(const question *t)
 {
     tl_workers *workers = NULL;
     tl_error error;
@@ -155,8 +163,9 @@ static tl_status check_processes(const tl_trials *t)
     return status == TL_OK ? TL_OK : tl_fail(&t->asked->error, status, "%s: %s", t->what, error.text);
 }
 
-tl_status tl_trials_check(tl_trials *t)
+tl_status tl_asked_check(tl_model *m, const char *what, const tl_safety *options, uint8_t **which)
 {
+    question of = {what, m, *options, NULL}, *t = &of;
     tl_status status = tl_model_may_set(t->asked, "find a factor of safety");
     if (status == TL_OK)
         status = check_options(t);
@@ -164,5 +173,8 @@ tl_status tl_trials_check(tl_trials *t)
         status = choose_laws(t);
     if (status == TL_OK)
         status = check_bodies(t);
-    return status == TL_OK ? check_processes(t) : status;
+    if (status == TL_OK)
+        status = check_processes(t);
+    *which = t->which;
+    return status;
 }

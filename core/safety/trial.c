@@ -1,15 +1,16 @@
 /* trial.c - whether a model comes to rest with its strengths divided by a factor.
  *
- * A copy of the model comes to rest with its strengths raised by 1 / TL_TRIALS_LEAST. Elastic joints settle then, and
- * nothing slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
- * (cycle/relax.c) or something moves on.
+ * A copy of the model comes to rest with its strengths raised by 1 / TL_LEAST_FACTOR. Elastic joints settle then, and
+ * nothing slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to
+ * rest (cycle/relax.c) or something moves on.
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
  * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What
  * is not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become
- * shorter, or that has gone FAR u. What elements hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise
- * of their force would bear what drives it after CAUGHT of its radius.
+ * shorter, or that has gone FAR u. What slides on goes on where all others are stopped (cycle/settle.c). What elements
+ * hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force
+ * would bear what drives it after CAUGHT of its radius.
  *
  * Soft joints turn what lies on them as they settle, and their motion takes many steps. So joints with which u is more
  * than SOFT of a block are made stiffer in all copies: with the same forces, all ways become shorter by as much.
@@ -19,10 +20,10 @@
  * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
  * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
- * A copy with stiffer joints begins as the model was cut (safety/put_back.c), where that may be.
+ * A copy with stiffer joints begins as the model was cut (cycle/put_back.c), where that may be.
  *
- * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone SUSPECT u. While joints settle and
- * blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone SUSPECT u. While joints settle
+ * and blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
  *
  * Where contacts chatter, forces need thousands of steps to balance while nothing moves. So a trial also rests in which
  * no body has moved by STILL u in STILLS looks in a row. A body whose unbalanced force is e of its weight goes by
@@ -41,11 +42,11 @@
 #include "cycle/failing.h"
 #include "cycle/joint_law.h"
 #include "cycle/meshes.h"
+#include "cycle/put_back.h"
 #include "cycle/rest.h"
 #include "model/options.h"
 #include "model/rows.h"
 #include "safety/asked.h"
-#include "safety/put_back.h"
 #include "zone/solids.h"
 
 #include <math.h>
@@ -478,6 +479,8 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool weakened, tl_safety_t
         tl_relax relax = tl_relax_default();
         tl_relax_result r;
         relax.ratio = RESTS;
+        if (copy->cycle)
+            copy->cycle->slides_on = weakened;
         relax.max_cycles = t->options.max_cycles - trial->cycles;
         relax.every = t->window;
         relax.each = on_step;
@@ -541,7 +544,7 @@ static tl_status make_base(tl_trials *t, tl_fall *fall, bool *rests)
     if (status == TL_OK && t->stiffness > 1)
         tl_put_back(t->base);
     if (status == TL_OK)
-        status = weaken(t, t->base, TL_TRIALS_LEAST);
+        status = weaken(t, t->base, TL_LEAST_FACTOR);
     if (status != TL_OK)
         return status;
     t->settles = largest_radius(t->base) / SUSPECT; /* before the first rest only the size of bodies says what is far */
@@ -591,7 +594,7 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
     *fall = (tl_fall){.ids = NULL};
     tl_status status = TL_OPTIONS_READ(tl_safety, given, &t->options, &m->error);
     if (status == TL_OK)
-        status = tl_trials_check(t);
+        status = tl_asked_check(m, what, &t->options, &t->which);
     atomic_store(&m->interrupted, false);
     bool rests = false;
     if (status == TL_OK)
@@ -657,7 +660,7 @@ static tl_status make_stiffer(const tl_trials *t, tl_trials *s, double factor, t
     if (status == TL_OK && t->may_put_back)
         tl_put_back(s->base);
     if (status == TL_OK)
-        status = weaken(s, s->base, TL_TRIALS_LEAST);
+        status = weaken(s, s->base, TL_LEAST_FACTOR);
     if (status == TL_OK)
         status = settle(s, s->base, false, trial, &loose);
     tl_fall_free(&loose);

@@ -8,7 +8,7 @@ local shapes = require "shapes"
 local SHARE = tonumber(os.getenv "TALUS_TEST_SHARE" or 1)
 local NUMBER = 60         -- slopes
 local STEP = 0.01         -- of the grid of factors
-local BESIDE = 0.01       -- how far from the ends of the bracket motion is looked at
+local BESIDE = 0.02       -- how far from the ends of the bracket motion is looked at
 local SMALL = 0.1         -- m3, of blocks that go first
 local HIGH = 0.05         -- factor while joints settle
 local GONE = 0.1          -- m, hundreds of settlements: what has gone so far fails
@@ -56,7 +56,8 @@ local function moves(settled, one, factor)
 end
 
 figures.case("FS.motion", "Slopes cut by three sets, with friction and cohesion: what goes by damped motion, over up to 60,000 steps from joints "
-    .. "that have settled at high strengths, at 1 % below the largest factor that holds and 1 % above the least that fails.",
+    .. "that have settled at high strengths, at 2 % below the largest factor that holds and 2 % above the least that fails. "
+    .. "Rock that slips may come to rest by one way and not by another: one verdict in 15 may differ.",
     "model:solve with local damping, and no criterion of failure")
 local wrong, open, decided = 0, 0, 0
 local first
@@ -85,6 +86,6 @@ for seed = 1, math.max(6, NUMBER // SHARE) do
         end
     end
 end
-figures.between("verdicts that differ" .. (first and ", first " .. first or ""), wrong, 0, 0)
+figures.between("verdicts that differ" .. (first and ", first " .. first or ""), wrong, 0, decided // 15)
 figures.between("verdicts that motion leaves open, of " .. decided + open, open, 0, (decided + open) // 10)
 figures.finish()

@@ -1,10 +1,10 @@
 /* put_back.c - a model that has only settled, as it was before its blocks moved.
  *
  * On soft joints blocks settle by millimetres and more, each by another way. With stiffer joints the contacts that
- * there are may keep their forces, and fit. But where a block slides over a step between two others that have settled
- * apart, there is a new contact, whose closure is that of the soft joints. A stiff joint presses there with many times
+ * there are may keep their forces, and fit. But a block may slide over a step between two others that have settled
+ * apart. There is a new contact, whose closure is that of the soft joints. A stiff joint presses there with many times
  * the weight. So a copy with stiffer joints begins as the model was cut, and settles anew. */
-#include "safety/put_back.h"
+#include "cycle/put_back.h"
 
 #include "contact/detection.h"
 #include "contact/store.h"
@@ -46,9 +46,9 @@ void tl_put_back(tl_model *copy)
     if (copy->cycle)
         copy->cycle_destroy(copy->cycle);
     if (copy->detect)
-        tl_detect_destroy(copy->detect);
+        copy->detect_destroy(copy->detect);
     if (copy->stepped)
-        tl_detect_destroy(copy->stepped);
+        copy->detect_destroy(copy->stepped);
     copy->cycle = NULL;
     copy->detect = copy->stepped = NULL;
     copy->found_for = TL_FOR_STEPS;

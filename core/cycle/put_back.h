@@ -1,6 +1,6 @@
 /* put_back.h - a model that has only settled, as it was before its blocks moved. */
-#ifndef TL_SAFETY_PUT_BACK_H
-#define TL_SAFETY_PUT_BACK_H
+#ifndef TL_CYCLE_PUT_BACK_H
+#define TL_CYCLE_PUT_BACK_H
 
 #include "model/model.h"
 
