@@ -8,7 +8,7 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
     const struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     const tl_node_table *n = &e->nodes;
-    const size_t first = of->node_begin, bytes = (of->node_end - of->node_begin) * sizeof(double);
+    const size_t first = of->node_begin;
     tl_element_batch batch = {.size = sizeof batch,
                               .count = of->end - of->begin,
                               .dt = tl_law_time(m, m->dt),
@@ -23,9 +23,6 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
                               .lost = t->lost + of->begin,
                               .given = t->given + of->begin};
     for (int k = 0; k < 3; k++) {
-        memset(lanes->du[k], 0, bytes);
-        memset(lanes->v[k], 0, bytes);
-        memset(lanes->normal[k], 0, bytes);
         batch.rest[k] = n->rest[k] + first;
         batch.u[k] = n->u[k] + first;
         batch.du[k] = lanes->du[k];
@@ -41,4 +38,13 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
     for (uint32_t k = 0; k < t->state_columns; k++)
         lanes->element_state[k] = t->state[k] + of->begin;
     return batch;
+}
+
+void tl_element_lanes_stop(tl_element_lanes *lanes, size_t nodes)
+{
+    for (int k = 0; k < 3; k++) {
+        memset(lanes->du[k], 0, nodes * sizeof(double));
+        memset(lanes->v[k], 0, nodes * sizeof(double));
+        memset(lanes->normal[k], 0, nodes * sizeof(double));
+    }
 }
