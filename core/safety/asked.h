@@ -10,8 +10,8 @@
  * slips. */
 #define TL_LEAST_FACTOR 0.05
 
-/* Checks options, bodies and processes, or refuses with a sentence that begins with `what`. *which, to be freed: whether
- * each law is divided. */
+/* Checks options, bodies and processes, or refuses with a sentence that begins with `what`. *which, to be freed: of
+ * each law whether it is divided. */
 tl_status tl_asked_check(tl_model *m, const char *what, const tl_safety *options, uint8_t **which);
 
 #endif
