@@ -108,6 +108,7 @@ local TITLES = {
     { "FS.two_blocks", "factor of safety of two blocks that push" },
     { "FS.random", "factors of safety of random wedges" },
     { "FS.many", "factors of safety of random wedges and slopes, in all forms" },
+    { "FS.motion", "factors of safety of random slopes by long runs of damped motion" },
     { "FS.griffiths", "factor of safety of a slope of soil" },
     { "FS.same", "one factor of safety in other units and places" },
     { "E1.dipscan", "paper's wedge, friction at failure over the dip of a plane" },
