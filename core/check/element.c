@@ -1,10 +1,11 @@
 /* element.c - the conformance check of elements.
  *
- * A kind places its elements in a world of two blocks: block 1 is all that lies at x < 0, block 2 the rest. Their walls
- * are the square |y|, |z| < 1 at x = 0. Outer faces are that square of block 1 at x = -1, and the floors at z = -1
- * from there to x = 0, and on to 1 of block 2. With each set of parameters the nodes then go through random motions. An
- * element that brings in nothing from outside is internal: its forces are then in equilibrium, and do not see that all
- * nodes turn and move together. */
+ * A kind places its elements in a world of two blocks: block 1 is all that lies at x < 0, block 2 the rest. The square
+ * |y|, |z| < 1 at x = 0 is their walls, the halves y < 0 and y > 0. That at x = -1 is an outer face of block 1. The
+ * floors are outer faces, too, at z = -1: from there to x = 0 that of block 1, and on to x = 1 that of block 2. With
+ * each set of parameters the nodes then go through random motions. An element that brings in nothing from outside is
+ * internal: its forces are then in equilibrium, and do not see that all nodes turn and move together. What elements do
+ * together comes before each update, as in a model whose steps are all due. */
 #include "check/element.h"
 
 #include "base/inside.h"
@@ -50,7 +51,9 @@
     RULE(RIGID, "rigid motion", "an internal element does not see that all its nodes move together")                   \
     RULE(BALANCE, "balance", "the work on a path is stored, lost or given")                                            \
     RULE(CYCLE, "closed path", "a closed path of an internal element makes no energy")                                 \
-    RULE(STIFFNESS, "stiffness", "stiffness() gives finite numbers of at least 0")
+    RULE(STIFFNESS, "stiffness", "stiffness() gives finite numbers of at least 0")                                     \
+    RULE(TOGETHER, "together",                                                                                         \
+         "together() does the same in any order of the elements, and nothing more at the same time")
 #define RULE_NUMBER(number, name, doc) number,
 enum { RULES(RULE_NUMBER) };
 #define RULE_ROW(number, name, doc) [number] = {name, doc},
@@ -69,12 +72,12 @@ typedef struct trial {
     const tl_element_ops *ops;
     void *self;
     uint32_t columns[2]; /* of nodes, of the whole */
-    state_of now, next, other;
+    state_of now, next, other, turned;
     tl_id block[NODES];
     bool places; /* with some set */
     char text[TL_ERROR_TEXT];
     tl_line_node line[NODES];
-    double dt;
+    double dt, time;
     double stiffest; /* N/m, of stiffness() */
     void *memory[ELEMENTS];
 } trial;
@@ -185,11 +188,13 @@ static tl_status faces(const tl_element_host *h, const char *group, tl_vec3 faci
 static tl_status walls(const tl_element_host *h, const tl_wall_filter *filter, const tl_element_wall **list,
                        size_t *count)
 {
-    static const tl_vec3 corners[] = {{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}};
-    static const tl_element_wall wall = {{1, 2}, {0, 0}, "A", {{1, 0, 0}, {-1, 0, 0}}, {corners, corners}, 4, 4, 0};
+    static const tl_vec3 low[] = {{0, -1, -1}, {0, 0, -1}, {0, 0, 1}, {0, -1, 1}},
+                         high[] = {{0, 0, -1}, {0, 1, -1}, {0, 1, 1}, {0, 0, 1}};
+    static const tl_element_wall halves[] = {{{1, 2}, {0, 0}, "A", {{1, 0, 0}, {-1, 0, 0}}, {low, low}, 4, 2, 0},
+                                             {{1, 2}, {0, 0}, "A", {{1, 0, 0}, {-1, 0, 0}}, {high, high}, 4, 2, 0}};
     (void)h, (void)filter;
-    *list = &wall;
-    *count = 1;
+    *list = halves;
+    *count = 2;
     return TL_OK;
 }
 
@@ -260,7 +265,7 @@ static tl_status update(trial *t, state_of *s, uint32_t first, uint32_t end)
     uint32_t start[ELEMENTS + 1];
     const uint32_t node = s->start[first];
     tl_report report = {.size = sizeof report};
-    tl_element_batch b = {.size = sizeof b, .count = end - first, .dt = t->dt, .time = 1, .start = start};
+    tl_element_batch b = {.size = sizeof b, .count = end - first, .dt = t->dt, .time = t->time, .start = start};
     for (uint32_t e = first; e <= end; e++)
         start[e - first] = s->start[e] - node;
     for (int k = 0; k < 3; k++) {
@@ -291,6 +296,113 @@ static tl_status update(trial *t, state_of *s, uint32_t first, uint32_t end)
     if (status != TL_OK)
         tl_check_note(t->c, RUNS, "update() failed: %s", tl_report_text(&report, status));
     return status;
+}
+
+/* Copies element e of a state, and its nodes, to element k of another, behind what that has. */
+static void copy_element(const state_of *from, uint32_t e, state_of *to, uint32_t k)
+{
+    const uint32_t first = from->start[e], count = from->start[e + 1] - first, into = to->start[k];
+    const double(*const columns[])[NODES] = {from->rest, from->u, from->normal, &from->weight, from->state};
+    double(*const into_columns[])[NODES] = {to->rest, to->u, to->normal, &to->weight, to->state};
+    static const int widths[] = {3, 3, 3, 1, STATES};
+    for (size_t c = 0; c < sizeof widths / sizeof *widths; c++)
+        for (int w = 0; w < widths[c]; w++)
+            memcpy(into_columns[c][w] + into, columns[c][w] + first, count * sizeof(double));
+    for (int w = 0; w < STATES; w++)
+        to->whole[w][k] = from->whole[w][e];
+    to->flags[k] = from->flags[e];
+    to->start[k + 1] = into + count;
+}
+
+/* The elements of a state in the opposite order. */
+static void turn_round(const state_of *from, state_of *to)
+{
+    *to = *from;
+    to->start[0] = 0;
+    for (uint32_t k = 0; k < from->count; k++)
+        copy_element(from, from->count - 1 - k, to, k);
+}
+
+/* Has all elements of a state do what they do together. */
+static tl_status call_together(trial *t, state_of *s)
+{
+    double *state[STATES], *whole[STATES], sum = 0;
+    for (int n = 0; n < STATES; n++) {
+        state[n] = s->state[n];
+        whole[n] = s->whole[n];
+    }
+    tl_report report = {.size = sizeof report};
+    const tl_element_batch b = {.size = sizeof b,
+                                .count = s->count,
+                                .dt = t->dt,
+                                .time = t->time,
+                                .start = s->start,
+                                .rest = {s->rest[0], s->rest[1], s->rest[2]},
+                                .u = {s->u[0], s->u[1], s->u[2]},
+                                .normal = {s->normal[0], s->normal[1], s->normal[2]},
+                                .weight = s->weight,
+                                .state = state,
+                                .element_state = whole,
+                                .flags = s->flags};
+    tl_enter(t->c->kind, "together");
+    const tl_status status = t->ops->together(t->self, &b, &report);
+    tl_leave();
+    if (status != TL_OK) {
+        tl_check_note(t->c, RUNS, "together() failed: %s", tl_report_text(&report, status));
+        return status;
+    }
+    for (uint32_t k = 0; k < t->columns[0]; k++)
+        for (uint32_t i = 0; i < s->start[s->count]; i++)
+            sum += 0 * s->state[k][i];
+    for (uint32_t k = 0; k < t->columns[1]; k++)
+        for (uint32_t e = 0; e < s->count; e++)
+            sum += 0 * s->whole[k][e];
+    if (!isfinite(sum))
+        tl_check_note(t->c, FINITE, "together() gives a state that is not finite");
+    return TL_OK;
+}
+
+/* Whether two states have the same states of elements, within rounding of the largest of a column. */
+static bool have_same_states(const trial *t, const state_of *a, const state_of *b)
+{
+    bool same = true;
+    for (uint32_t k = 0; k < t->columns[0] + t->columns[1]; k++) {
+        const bool whole = k >= t->columns[0];
+        const double *x = whole ? a->whole[k - t->columns[0]] : a->state[k];
+        const double *y = whole ? b->whole[k - t->columns[0]] : b->state[k];
+        const uint32_t count = whole ? a->count : a->start[a->count];
+        double most = 0, off = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            most = fmax(most, fabs(x[i]));
+            off = fmax(off, fabs(x[i] - y[i]));
+        }
+        same = same && off <= ROUNDING * most;
+    }
+    return same;
+}
+
+/* What elements do together where they are: once more, in the opposite order, and at the same time again. */
+static tl_status act_together(trial *t, state_of *s)
+{
+    if (!t->ops->together)
+        return TL_OK;
+    state_of *const other = &t->other, *const turned = &t->turned;
+    *other = *s;
+    turn_round(s, turned);
+    const tl_status status = call_together(t, s);
+    if (status != TL_OK)
+        return status;
+    if (call_together(t, other) == TL_OK && memcmp(other, s, sizeof *s) != 0)
+        tl_check_note(t->c, REPEATS, "the same call of together() gives another result");
+    if (call_together(t, turned) == TL_OK) {
+        turn_round(turned, other);
+        if (!have_same_states(t, s, other))
+            tl_check_note(t->c, TOGETHER, "in the opposite order the elements get other states");
+    }
+    *other = *s;
+    if (call_together(t, other) == TL_OK && !have_same_states(t, s, other))
+        tl_check_note(t->c, TOGETHER, "asked again at the same time and places it changes a state");
+    return TL_OK;
 }
 
 static tl_vec3 at(double (*column)[NODES], uint32_t i)
@@ -406,6 +518,9 @@ static void check_sums(trial *t, uint32_t e)
 static bool step(trial *t, uint64_t key, bool internal[ELEMENTS])
 {
     move(t, key, false, WAY);
+    t->time += t->dt;
+    if (act_together(t, &t->next) != TL_OK)
+        return false;
     const state_of before = t->next;
     if (update(t, &t->next, 0, t->next.count) != TL_OK)
         return false;
@@ -511,7 +626,8 @@ static void run_trial(trial *t)
         return;
     check_stiffness(t);
     t->dt = 0; /* as the host does, once where they were placed */
-    if (update(t, &t->now, 0, t->now.count) != TL_OK)
+    t->time = 1;
+    if (act_together(t, &t->now) != TL_OK || update(t, &t->now, 0, t->now.count) != TL_OK)
         return;
     t->dt = DT;
     for (uint64_t k = 0; k < STEPS; k++)

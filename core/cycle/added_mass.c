@@ -13,6 +13,7 @@
  * change of it is external work (energy.c), as when velocities are set. */
 #include "cycle/added_mass.h"
 
+#include "cycle/contact_beta.h"
 #include "cycle/contributors.h"
 #include "cycle/gridpoint.h"
 #include "model/options.h"
@@ -193,6 +194,8 @@ tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
     m->added_dt = adds ? scaling.dt : NAN;
     m->added_most = adds ? most : NAN;
     m->constraints++;
+    if (tl_contact_beta(m) > 0)
+        tl_contact_beta_changes(m);
     if (m->cycle) {
         m->cycle->dt = 0;
         m->cycle->told_share = 0;

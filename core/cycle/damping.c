@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/params.h"
 #include "contact/contacts.h"
+#include "cycle/contact_beta.h"
 #include "cycle/contact_forces.h"
 #include "cycle/gridpoint.h"
 #include "cycle/undo.h"
@@ -99,9 +100,12 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     if (!kind)
         return tl_kind_unknown(&m->error, TL_KIND_DAMPING, damping);
     const tl_damping_ops *ops = kind->ops;
+    const double beta = tl_contact_beta(m);
     status = tl_damping_make(m, kind, args, NULL);
     if (status != TL_OK)
         return status;
+    if (tl_contact_beta(m) != beta)
+        tl_contact_beta_changes(m);
     if (ops->before)
         note_forces(&m->bodies, 0, m->bodies.table.rows);
     if (m->cycle)

@@ -39,11 +39,9 @@ static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
 static bool may_fail(const tl_model *m)
 {
     const struct tl_elements *e = m->elements;
-    bool sure = true;
-    for (size_t k = 0; k < e->set_count; k++)
-        sure = sure && tl_element_ops_of(&e->set[k])->never_fails;
-    for (size_t row = 0; sure && row < e->nodes.table.rows; row++)
-        sure = e->nodes.k[row] < TL_UNDO_TAME && e->nodes.c[row] < TL_UNDO_TAME;
+    bool sure = tl_elements_are_listed(m) && e->most_k < TL_UNDO_TAME && e->most_c < TL_UNDO_TAME;
+    for (size_t k = 0; sure && k < e->set_count; k++)
+        sure = tl_element_ops_of(&e->set[k])->never_fails;
     return !sure || tl_elements_together_due(m);
 }
 

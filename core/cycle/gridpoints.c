@@ -11,6 +11,7 @@
 #include "base/columns.h"
 #include "base/extremes.h"
 #include "base/lanes.h"
+#include "cycle/contact_beta.h"
 #include "cycle/gridpoint.h"
 #include "cycle/held_gridpoints.h"
 #include "cycle/meshes.h"
@@ -30,32 +31,36 @@
 
 /* ---------------------------------------------------------------- step ------------------- */
 
-/* The stiffness that asks for as short a step as a stiffness k and a damping c together. Let w^2 = k/m and b = c/(2 m).
- * The longest stable step is 2/w (sqrt(1 + l^2) - l) with l = b/w. It is 2/s with s = b + sqrt(w^2 + b^2). */
-static double damped(double k, double c, double mass)
+/* The stiffness that contacts alone would need to ask for as short a step as a stiffness k and a damping c together.
+ * Their own beta is in c. Let w^2 = k/m and b = c/(2 m). The longest stable step is 2/w (sqrt(1 + l^2) - l) with
+ * l = b/w. It is 2/s with s = b + sqrt(w^2 + b^2). With contacts alone it solves k (dt^2 + 2 beta dt) = 4 m. */
+static double damped(double k, double c, double mass, double beta)
 {
-    if (!(c > 0))
+    if (!(c > 0) && !(beta > 0))
         return k;
     const double b = c / (2 * mass), s = b + sqrt(k / mass + b * b);
-    return mass * s * s;
+    return mass * s * s / (1 + beta * s);
 }
 
 /* What holds each gridpoint: zones and, no less than the floor, segments and carriers. With that, what rounding of its
- * place would bring; before, that column has the damping of elements. */
+ * place would bring; before, that column has what damps it. With mass scaling zones and elements count as damped, too:
+ * how stiff that is does not depend on the step then. */
 static void find_holds(tl_model *m)
 {
     tl_gridpoints *p = &m->zones->points;
+    const double beta = tl_mass_scaled(m) ? 0 : tl_contact_beta(m);
     for (size_t row = 0; row < p->table.rows; row++)
         p->holds[row] = p->rounded[row] = 0;
     tl_segments_stiffen(m);
     tl_carriers_stiffen(m);
-    tl_elements_stiffen(m, p->rounded);
     for (size_t row = 0; row < p->table.rows; row++)
-        p->holds[row] = p->stiffness[row] + tl_larger(p->holds[row], p->floor[row]);
+        p->rounded[row] = beta * p->holds[row];
+    tl_elements_stiffen(m, p->rounded);
     for (size_t row = 0; row < p->table.rows; row++) {
-        const double damping = p->rounded[row], stiffness = p->holds[row];
+        const double held = tl_larger(p->holds[row], p->floor[row]), stiffness = p->stiffness[row] + held;
+        const double damping = p->rounded[row] + beta * (held - p->holds[row]);
         p->rounded[row] = tl_least_borne(&m->bodies, m->zones->mesh[p->mesh[row]].row, stiffness);
-        p->holds[row] = damped(stiffness, damping, p->mass[row]);
+        p->holds[row] = damped(stiffness, damping, p->mass[row], beta);
     }
 }
 

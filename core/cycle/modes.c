@@ -6,11 +6,12 @@
  *
  * of their freedoms, and adds k g^T g to the stiffness K. Points that press, or pull, have kn A across the joint and
  * ks A along it. A field contact has the springs of its area at the centre of its pressure (secants.c has the same).
+ * An element adds its tangent (element/tangent.c). One that stands for what lies outside, as a quiet face, adds none.
  *
  * Freedoms are those of the centroid, and of the turn about the principal axes, times the root of mass or moment of
  * inertia. So the mass matrix is 1, and the eigenvalues of K are squares of circular frequencies, 1/s2. K is stored by
- * rows from the first entry on, with bodies in the order of Cuthill and McKee (1969) along their contacts. A little
- * stiffness is added everywhere, and taken off the eigenvalues again: what nothing holds has 0. */
+ * rows from the first entry on. Bodies are in the order of Cuthill and McKee (1969) along contacts and elements. A
+ * little stiffness is added everywhere, and taken off the eigenvalues again: what nothing holds has 0. */
 #include "base/error.h"
 #include "base/skyline.h"
 #include "contact/body_contacts.h"
@@ -18,7 +19,7 @@
 #include "contact/places.h"
 #include "contact/sides.h"
 #include "cycle/cycle_data.h"
-#include "element/elements.h"
+#include "element/tangent.h"
 #include "zone/zones.h"
 
 #include <math.h>
@@ -52,26 +53,76 @@ typedef struct vibration {
     uint32_t *number; /* of each body among the movers, or TL_NO_ROW */
     uint32_t *queue;
     size_t movers, size;
+    uint32_t *beside, *beside_begin; /* bodies that body b may share a spring with: from beside_begin[b] on */
     tl_skyline k;
 } vibration;
 
 /* ---------------------------------------------------------------- freedoms ---------------- */
 
-static uint32_t other_body(const tl_model *m, uint32_t contact, uint32_t body)
+/* The rows of the bodies that carry nodes of an element, one after the other, each once; how many. */
+static size_t list_carriers(const tl_model *m, size_t row, uint32_t *to)
 {
-    const tl_sides on = tl_contact_bodies(m, contact);
-    return on.a == body ? on.b : on.a;
-}
-
-static size_t partners(const tl_model *m, uint32_t body)
-{
+    const tl_element_table *t = &m->elements->table;
     size_t count = 0;
-    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
-        count++;
+    for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
+        const uint32_t body = m->elements->nodes.body[k];
+        size_t i = 0;
+        while (i < count && to[i] != body)
+            i++;
+        if (i == count && body != TL_NO_ROW)
+            to[count++] = body;
+    }
     return count;
 }
 
-/* Lists bodies that hang together from one of them on, in the order in which contacts reach them. */
+/* Counts what stands beside each body or, with `put`, lists it: contacts first, in their order. */
+static void go_beside(vibration *v, bool put)
+{
+    const tl_model *m = v->m;
+    const size_t elements = m->elements ? m->elements->table.table.rows : 0;
+    uint32_t on[TL_ELEMENT_NODES];
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+            const tl_sides of = tl_contact_bodies(m, at.contact);
+            if (put)
+                v->beside[v->beside_begin[body]] = of.a == body ? of.b : of.a;
+            v->beside_begin[body]++;
+        }
+    for (size_t row = 0; row < elements; row++) {
+        const size_t count = list_carriers(m, row, on);
+        for (size_t i = 0; i < count; i++)
+            for (size_t k = 0; k < count; k++) {
+                if (put && i != k)
+                    v->beside[v->beside_begin[on[i]]] = on[k];
+                v->beside_begin[on[i]] += i != k;
+            }
+    }
+}
+
+/* false: out of memory. */
+static bool list_beside(vibration *v)
+{
+    const size_t rows = v->m->bodies.table.rows;
+    uint32_t sum = 0;
+    v->beside_begin = calloc(rows + 1, sizeof *v->beside_begin);
+    if (!v->beside_begin)
+        return false;
+    go_beside(v, false);
+    for (size_t body = 0; body < rows; body++) {
+        const uint32_t count = v->beside_begin[body];
+        v->beside_begin[body] = sum;
+        sum += count;
+    }
+    v->beside = malloc((sum + (size_t)1) * sizeof *v->beside);
+    if (!v->beside)
+        return false;
+    go_beside(v, true); /* each then begins where it ended: */
+    memmove(v->beside_begin + 1, v->beside_begin, rows * sizeof *v->beside_begin);
+    v->beside_begin[0] = 0;
+    return true;
+}
+
+/* Lists bodies that hang together from one of them on, in the order in which they reach each other. */
 static size_t reach(vibration *v, uint32_t from, size_t end)
 {
     const tl_bodies *b = &v->m->bodies;
@@ -79,8 +130,8 @@ static size_t reach(vibration *v, uint32_t from, size_t end)
     v->queue[end++] = from;
     v->number[from] = 0;
     for (; next < end; next++)
-        for (tl_body_contacts at = tl_contacts_of_body(v->m, v->queue[next]); tl_next_contact(&at);) {
-            const uint32_t other = other_body(v->m, at.contact, v->queue[next]);
+        for (uint32_t k = v->beside_begin[v->queue[next]]; k < v->beside_begin[v->queue[next] + 1]; k++) {
+            const uint32_t other = v->beside[k];
             if (v->number[other] != TL_NO_ROW || b->fixed[other] == TL_FIX_ALL)
                 continue;
             v->number[other] = 0;
@@ -89,16 +140,16 @@ static size_t reach(vibration *v, uint32_t from, size_t end)
     return end;
 }
 
-/* The body from which to begin: of those that are left and free that with the fewest contacts. */
+/* The body from which to begin: of those that are left and free that with the fewest beside it. */
 static uint32_t choose_first(const vibration *v)
 {
     const tl_bodies *b = &v->m->bodies;
     uint32_t best = TL_NO_ROW;
-    size_t least = SIZE_MAX;
+    uint32_t least = UINT32_MAX;
     for (uint32_t body = 0; body < b->table.rows; body++) {
         if (v->number[body] != TL_NO_ROW || b->fixed[body] == TL_FIX_ALL)
             continue;
-        const size_t count = partners(v->m, body);
+        const uint32_t count = v->beside_begin[body + 1] - v->beside_begin[body];
         if (count < least) {
             least = count;
             best = body;
@@ -137,8 +188,8 @@ static size_t first_of(const vibration *v, size_t k, size_t own)
 {
     uint32_t least = (uint32_t)k;
     const uint32_t body = v->mover[k].body;
-    for (tl_body_contacts at = tl_contacts_of_body(v->m, body); tl_next_contact(&at);) {
-        const uint32_t other = v->number[other_body(v->m, at.contact, body)];
+    for (uint32_t i = v->beside_begin[body]; i < v->beside_begin[body + 1]; i++) {
+        const uint32_t other = v->number[v->beside[i]];
         least = other < least ? other : least;
     }
     for (; least <= k; least++)
@@ -291,25 +342,45 @@ static tl_status add_contacts(vibration *v)
     return TL_OK;
 }
 
-/* Elements push and pull, but how stiff they are at rest no kind tells: what they hold swings too slowly. */
-static void say_elements(const vibration *v)
+/* How a freedom of a mover moves it, in the order of a tangent. */
+static void motion_by(const mover *of, unsigned k, double by[6])
 {
-    const struct tl_elements *e = v->m->elements;
-    size_t holding = 0;
-    for (size_t row = 0; e && row < e->table.table.rows; row++) {
-        bool holds = false;
-        for (uint32_t k = 0; k < e->table.node_count[row] && !holds; k++) {
-            const uint32_t node = e->table.node_begin[row] + k, body = e->nodes.body[node];
-            holds = e->nodes.k[node] > 0 && body != TL_NO_ROW && v->number[body] != TL_NO_ROW;
+    for (unsigned i = 0; i < 6; i++)
+        by[i] = i / 3 != k / 3 ? 0 : of->per[k] * (k < 3 ? i == k : of->axes.m[i - 3][k - 3]);
+}
+
+/* Adds what resists mover j, at body `to` of a tangent, when mover i, at body `from`, moves. */
+static void add_block(vibration *v, const tl_element_tangent *t, uint32_t from, uint32_t to)
+{
+    const mover *a = &v->mover[v->number[t->body[from]]], *b = &v->mover[v->number[t->body[to]]];
+    const size_t width = 6 * (size_t)t->count;
+    double x[6], y[6];
+    for (unsigned i = 0; i < 6; i++)
+        for (unsigned j = 0; j < 6; j++) {
+            if (a->freedom[i] == NO_FREEDOM || b->freedom[j] == NO_FREEDOM || b->freedom[j] > a->freedom[i])
+                continue;
+            double sum = 0;
+            motion_by(a, i, x);
+            motion_by(b, j, y);
+            for (size_t k = 0; k < 36; k++)
+                sum += x[k / 6] * t->k[(6 * from + k / 6) * width + 6 * to + k % 6] * y[k % 6];
+            *tl_skyline_at(&v->k, a->freedom[i], b->freedom[j]) += sum;
         }
-        holding += holds;
+}
+
+static tl_status add_elements(vibration *v)
+{
+    const size_t rows = v->m->elements ? v->m->elements->table.table.rows : 0;
+    tl_element_tangent t = {.body = NULL};
+    tl_status status = TL_OK;
+    for (uint32_t row = 0; row < rows && status == TL_OK; row++) {
+        status = tl_element_tangent_find(v->m, row, &t);
+        for (uint32_t i = 0; status == TL_OK && t.internal && i < t.count; i++)
+            for (uint32_t k = 0; k < t.count; k++)
+                add_block(v, &t, i, k);
     }
-    if (holding)
-        tl_model_say(
-            v->m,
-            "modes: %zu element%s that hold%s free blocks, as springs and bolts do, %s not counted: with them the "
-            "frequencies are higher",
-            holding, holding == 1 ? "" : "s", holding == 1 ? "s" : "", holding == 1 ? "is" : "are");
+    tl_element_tangent_free(&t);
+    return status;
 }
 
 /* Adds a little stiffness to the diagonal, and gives it. */
@@ -456,7 +527,7 @@ tl_status tl_model_modes(tl_model *m, size_t count, tl_modes *modes)
                    .mover = malloc((rows + 1) * sizeof *v.mover),
                    .number = malloc((rows + 1) * sizeof *v.number),
                    .queue = malloc((rows + 1) * sizeof *v.queue)};
-    status = v.mover && v.number && v.queue ? TL_OK : tl_fail_memory(&m->error);
+    status = v.mover && v.number && v.queue && list_beside(&v) ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK) {
         list_movers(&v);
         if (v.size == 0)
@@ -467,13 +538,15 @@ tl_status tl_model_modes(tl_model *m, size_t count, tl_modes *modes)
     if (status == TL_OK)
         status = add_contacts(&v);
     if (status == TL_OK)
-        say_elements(&v);
+        status = add_elements(&v);
     if (status == TL_OK)
         status = find(&v, count, modes);
     tl_skyline_free(&v.k);
     free(v.mover);
     free(v.number);
     free(v.queue);
+    free(v.beside);
+    free(v.beside_begin);
     return status;
 }
 

@@ -26,6 +26,7 @@
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "cycle/conjugate.h"
+#include "cycle/contact_beta.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/gridpoints.h"
@@ -103,6 +104,8 @@ void tl_settle_begin(tl_model *m, int64_t load_steps)
         if (m->bodies.going)
             m->bodies.going[body] = (tl_going){.from = m->bodies.pose[body].u};
     }
+    if (tl_contact_beta(m) > 0)
+        tl_contact_beta_changes(m);
     m->relaxing = true;
     if (m->detect)
         tl_balance_note(m); /* the balance of the motion so far is none of a relaxation's */
@@ -125,6 +128,8 @@ void tl_settle_end(tl_model *m)
     }
     tl_gridpoints_stop(m);
     m->relaxing = false;
+    if (tl_contact_beta(m) > 0)
+        tl_contact_beta_changes(m);
     m->still = 0;
     m->dt = 0; /* what follows begins from rest */
     struct tl_cycle *c = m->cycle;

@@ -205,26 +205,70 @@ typedef struct step_rates {
     double rate, turn;
 } step_rates;
 
-/* The rate at which a body with dampers beside its springs asks for as short a step. They act by velocities of half a
- * step ago. With w^2 = 2 rate, and C the sum of c (1/M + r^2/I), the step is at most (2 / w) (sqrt(1 + l^2) - l),
- * l = C / w. No motion of a body and its neighbours is slowed by more than 2 C. */
-static double damped_rate(double rate, double c)
+/* ---------------------------------------------------------------- dampers ---------------- */
+
+static double damping_factor(const tl_model *m)
 {
-    const double w = sqrt(2 * rate + c * c) + c;
-    return 0.5 * w * w;
+    if (!m->damping || m->relaxing)
+        return 1;
+    const tl_damping_ops *ops = m->damping->ops;
+    tl_enter(m->damping, "step_factor");
+    double factor = ops->step_factor ? ops->step_factor(m->damping_self) : 1;
+    tl_leave();
+    return factor;
 }
 
-/* With mass scaling each rate has its own dampers; velocities do not count in a relaxation. */
-static step_rates damped_rates(const tl_model *m, step_rates of, tl_spread c, inverse_inertia per)
+/* One over the critical step for which inertia is added, 1/s; 0: none is. */
+static double added_share(const tl_model *m)
 {
-    if (m->relaxing)
+    return tl_adds_mass(m) ? tl_timestep_fraction(m) * damping_factor(m) / m->added_dt : 0;
+}
+
+/* What takes velocities of half a step ago, beside the springs of bodies. */
+typedef struct damped_by {
+    double beta;  /* s, of contacts: tl_contact_beta */
+    double share; /* 1/s, one over the step that inertia is added for; 0: rates are for each body's own step */
+} damped_by;
+
+/* The rate at which contacts alone would ask for as short a step as springs of that rate and dampers. Let C be the sum
+ * of c (1/M + r^2/I) and of beta times the rate of contacts. A step is stable if
+ *
+ *     rate dt^2 + 2 C dt <= 2,    so dt <= 2 / w,    w = (2 rate + C^2)^(1/2) + C
+ *
+ * and with contacts alone C = beta rate. So rate' = (rate + 2 C / dt) / (1 + 2 beta / dt). */
+static double damped_rate(damped_by by, double rate, double c)
+{
+    if (by.share > 0)
+        return (rate + 2 * by.share * c) / (1 + 2 * by.share * by.beta);
+    const double w = sqrt(2 * rate + c * c) + c;
+    return 0.5 * w * w / (1 + by.beta * w);
+}
+
+/* All but elements count as contacts: what a body stands on, if that is more, as well. */
+static double damped_rate_of(damped_by by, double rate, const tl_holding *of, inverse_inertia per)
+{
+    const double c = rate_of(of->damping, per) + by.beta * (rate - rate_of(of->undamped, per));
+    return damped_rate(by, rate, c);
+}
+
+/* With mass scaling of all each rate has its own dampers, and contacts are taken to hold all the rest; velocities do
+ * not count in a relaxation. */
+static step_rates damped_rates(const tl_model *m, damped_by by, step_rates of, const tl_holding *hold,
+                               inverse_inertia per)
+{
+    const tl_spread c = hold->damping;
+    if (m->relaxing || !(c.sum > 0 || (by.beta > 0 && hold->undamped.sum > 0)))
         return of;
     if (!tl_scales_all(m))
-        return (step_rates){damped_rate(of.rate, c.sum * per.mass + c.r2 * per.moment), 0};
-    return (step_rates){damped_rate(of.rate, 2 * c.sum * per.mass), damped_rate(of.turn, 2 * c.r2 * per.moment)};
+        return (step_rates){damped_rate_of(by, of.rate, hold, per), 0};
+    const damped_by plain = {0, 0};
+    return (step_rates){damped_rate(plain, of.rate, 2 * c.sum * per.mass),
+                        damped_rate(plain, of.turn, 2 * c.r2 * per.moment)};
 }
 
-static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
+/* ---------------------------------------------------------------- one body's rates -------- */
+
+static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest, damped_by by)
 {
     tl_holding of = holding_of(m, body);
     inverse_inertia per = inverse_of(m, body);
@@ -236,17 +280,17 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     step_rates all = {2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
     if (!tl_scales_all(m))
         all = (step_rates){fmax(pushed + turned, part * face), 0};
-    return of.damping.sum > 0 ? damped_rates(m, all, of.damping, per) : all;
+    return damped_rates(m, by, all, &of, per);
 }
 
 /* What a body's rate is no higher than, from what is known of its contacts at once. */
-static double most_rate(const tl_model *m, uint32_t body, double stiffest)
+static double most_rate(const tl_model *m, uint32_t body, double stiffest, damped_by by)
 {
     tl_holding most = most_holding_of(m, body);
     double on_face = law_on_face(most, stiffest) * m->bodies.face_rate[body];
     const inverse_inertia per = inverse_of(m, body);
-    const double rate = fmax(rate_of(most.stiffness, per), on_face);
-    return most.damping.sum > 0 ? damped_rate(rate, rate_of(most.damping, per)) : rate;
+    const step_rates all = {fmax(rate_of(most.stiffness, per), on_face), 0};
+    return damped_rates(m, by, all, &most, per).rate;
 }
 
 /* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */
@@ -312,19 +356,26 @@ static void rates_count(tl_model *m)
 typedef struct rate_search {
     row_search search;
     double stiffest; /* of the model's laws */
-    bool kept;       /* rates are kept in their column, and made anew only where contacts have changed */
-    bool all;        /* all rates are made anew */
+    damped_by by;
+    bool kept; /* rates are kept in their column, and made anew only where contacts have changed */
+    bool all;  /* all rates are made anew */
     /* of a body that asks for no more than this, what it asks for at the most will do; 0: of none */
     double known;
 } rate_search;
+
+static rate_search rate_search_of(tl_model *m, double known)
+{
+    return (rate_search){
+        .search.m = m, .stiffest = stiffest_law(m), .by = {tl_contact_beta(m), added_share(m)}, .known = known};
+}
 
 static step_rates rate_for(const rate_search *s, uint32_t body)
 {
     const tl_model *m = s->search.m;
     if (!tl_body_counts(m, body))
         return (step_rates){0, 0};
-    double most = s->known > 0 ? most_rate(m, body, s->stiffest) : INFINITY;
-    return most <= s->known ? (step_rates){most, 0} : body_rate(m, body, s->stiffest);
+    double most = s->known > 0 ? most_rate(m, body, s->stiffest, s->by) : INFINITY;
+    return most <= s->known ? (step_rates){most, 0} : body_rate(m, body, s->stiffest, s->by);
 }
 
 static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -376,14 +427,16 @@ static tl_row_value rates_keep(tl_model *m, double known)
     tl_detect *d = m->detect;
     struct tl_stiffness_rates now = {.version = 1 + m->structure + m->constraints + m->laws +
                                                 (m->elements ? m->elements->version : 0),
-                                     .recheck = tl_scales_all(m) ? m->cycles / RECHECK_STEPS : 0,
+                                     .recheck = tl_scales_all(m) ? 1 + m->cycles / RECHECK_STEPS : 0,
                                      .rotation = m->config.rotation};
     bool all = now.version != c->stiffness_rates.version || now.recheck != c->stiffness_rates.recheck ||
                now.rotation != c->stiffness_rates.rotation || (known > 0 && !(c->dt > 0)); /* it may be another one */
     bool placed = tl_rates_points(m) && !tl_scales_all(m);
     bool some = touch_new_points(m, placed ? TL_POINTS_PLACED : TL_POINTS_OTHERS);
     if (all || some || d->any_touched) {
-        rate_search s = {.search.m = m, .stiffest = stiffest_law(m), .kept = true, .all = all, .known = known};
+        rate_search s = rate_search_of(m, known);
+        s.kept = true;
+        s.all = all;
         tl_row_value found = row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
         memset(d->touched, 0, m->bodies.table.rows);
         d->any_touched = false;
@@ -414,7 +467,7 @@ void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate)
 
 tl_row_value tl_rates_anew(tl_model *m, double known)
 {
-    rate_search s = {.search.m = m, .stiffest = stiffest_law(m), .known = known};
+    rate_search s = rate_search_of(m, known);
     tl_row_value found = row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
     return (tl_row_value){fabs(found.value), found.row};
 }
@@ -473,8 +526,10 @@ static bound paper_rule(tl_model *m)
     row_search s = {.m = m};
     tl_row_value stiffest = row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     const double node = tl_model_has_elements(m) ? tl_elements_stiffest(m) : 0;
-    if (node > 0 && !(stiffest.row != TL_NO_ROW && stiffest.value >= node))
-        return (bound){bounds->least_mass / (2 * node), bounds->lightest, TL_NO_ROW, node, TL_NO_ROW};
+    const double beta = tl_contact_beta(m), undamped = damped_rate((damped_by){beta, 0}, node / bounds->least_mass, 0);
+    const double least = beta > 0 ? 0.5 / undamped : bounds->least_mass / (2 * node);
+    if (node > 0 && !(stiffest.row != TL_NO_ROW && bounds->least_mass / (2 * stiffest.value) <= least))
+        return (bound){least, bounds->lightest, TL_NO_ROW, node, TL_NO_ROW};
     if (stiffest.row == TL_NO_ROW)
         return no_bound;
     return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row, stiffest.value,
@@ -521,17 +576,6 @@ static double balance_factor(const tl_model *m)
     return m->timestep.rule == TL_TIMESTEP_BALANCE && !m->relaxing ? 0.5 * (1 + left) : 1;
 }
 
-static double damping_factor(const tl_model *m)
-{
-    if (!m->damping || m->relaxing)
-        return 1;
-    const tl_damping_ops *ops = m->damping->ops;
-    tl_enter(m->damping, "step_factor");
-    double factor = ops->step_factor ? ops->step_factor(m->damping_self) : 1;
-    tl_leave();
-    return factor;
-}
-
 /* The longest stable step with damping of contacts, over the one without it, `critical` s: (1 + l^2)^(1/2) - l. */
 static double contact_factor(const tl_model *m, double critical)
 {
@@ -542,7 +586,7 @@ static double contact_factor(const tl_model *m, double critical)
 /* The highest rate that is stable at the step for which inertia is added, 1/s2. */
 static double rate_limit(const tl_model *m)
 {
-    double share = tl_timestep_fraction(m) * damping_factor(m) / m->added_dt;
+    const double share = added_share(m);
     return 2 * share * share / (1 + 2 * tl_contact_beta(m) * share);
 }
 
@@ -643,6 +687,14 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     return TL_OK;
 }
 
+/* Without damping of contacts a share of the longest stable step has the bound share^2 times `own`. This is what comes
+ * to it with damping, so that contact_factor gives that share. */
+static double more_damped(const tl_model *m, double own, double share)
+{
+    const double critical = 2 * sqrt(own);
+    return 0.5 * tl_contact_beta(m) * share * (1 - share) * critical * contact_factor(m, critical);
+}
+
 /* With what gridpoints ask for: `least` is a square of a step, over 4, for all of the critical step. Where they control
  * it `by`, which may be NULL, is told. */
 static double with_zones(tl_model *m, double least, bound *by)
@@ -651,7 +703,7 @@ static double with_zones(tl_model *m, double least, bound *by)
     if (!isfinite(own))
         return least;
     const bool all = tl_scales_all(m);
-    const double asked = all ? own : share * share * own;
+    const double asked = all ? own : share * share * own + more_damped(m, own, share);
     if (isfinite(least) && (all ? least >= asked : least <= asked))
         return least;
     if (by) {

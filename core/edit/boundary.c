@@ -56,6 +56,8 @@ typedef struct body_sum {
     tl_vec3 force, moment;
     tl_vec3 arm; /* weighted by the length of the forces */
     double weight;
+    bool acts;    /* some of it is not 0 */
+    bool changes; /* some load is put on faces of it: one of 0, as above still water, takes the place of what it had */
 } body_sum;
 
 /* One call: what its actions do, before any of it is done. */
@@ -66,6 +68,7 @@ typedef struct plan {
     uint32_t *drive; /* likewise the number of a drive, or 0 */
     body_sum *sums;  /* of each body */
     face_loads loads;
+    bool changes; /* the loads of some bodies */
     tl_covers covers;
     tl_bare_list bare;
     tl_outer_list outer;
@@ -348,13 +351,19 @@ static tl_status add_load(plan *p, const tl_boundary_action *a, const outer_face
     face_loads *loads = &p->loads;
     uint32_t body = m->blocks.body[f->row];
     tl_vec3 force, moment, place = tl_body_place(&m->bodies, body);
-    face_load(m, a, f, &force, &moment);
     body_sum *sum = &p->sums[body];
-    double weight = tl_v3_norm(force);
+    sum->changes = p->changes = true;
+    if (!(f->loaded.a > 0))
+        return TL_OK;
+    face_load(m, a, f, &force, &moment);
+    const double weight = tl_v3_norm(force);
+    if (!(weight > 0) && !(tl_v3_norm2(moment) > 0))
+        return TL_OK;
     sum->force = tl_v3_add(sum->force, force);
     sum->moment = tl_v3_add(sum->moment, moment);
     sum->arm = tl_v3_madd(sum->arm, weight, tl_v3_sub(outer_centroid(f, &f->loaded), place));
     sum->weight += weight;
+    sum->acts = true;
     result->force = tl_v3_add(result->force, force);
     tl_vec3 about = tl_v3_cross(tl_v3_add(m->origin, place), force);
     result->moment = tl_v3_add(result->moment, tl_v3_add(moment, about));
@@ -483,15 +492,17 @@ static tl_status plan_action(plan *p, const tl_boundary_action *a, tl_boundary_r
             continue;
         }
         status = add_fixing(p, a, f);
-        if (a->loads && f->loaded.a > 0 && status == TL_OK)
+        if (a->loads && f->sums.a > 0 && status == TL_OK)
             status = add_load(p, a, f, result);
     }
     if (status == TL_OK && !fill_result(m, &faces, result))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK && a->loads && !isnan(a->level) && !(tl_v3_norm2(result->force) > 0))
-        status = tl_fail(&m->error, TL_E_NOT_FOUND,
-                         "boundary: no outer face there lies below the level %g m: give a higher one, or other faces",
-                         a->level);
+        status = tl_fail(
+            &m->error, TL_E_NOT_FOUND,
+            "boundary: no outer face there lies below the level %g m: give a higher one or other faces or, to take "
+            "water away, pressure = 0",
+            a->level);
     if (status == TL_OK && (!tl_v3_finite(result->force) || !tl_v3_finite(result->moment)))
         status = tl_fail(&m->error, TL_E_NUMERIC, "boundary: the load is not finite");
     if (status == TL_OK && does_something(a))
@@ -505,6 +516,8 @@ static tl_load load_of(const tl_model *m, uint32_t body, const body_sum *sum, bo
 {
     tl_vec3 arm = sum->weight > 0 ? tl_v3_scale(1 / sum->weight, sum->arm) : tl_v3(0, 0, 0);
     tl_load load = tl_load_default();
+    if (!sum->acts && !add)
+        return load;
     load.force = sum->force;
     load.moment = sum->moment;
     if (add) {
@@ -525,7 +538,7 @@ static tl_load load_of(const tl_model *m, uint32_t body, const body_sum *sum, bo
 static tl_status check_loads(tl_model *m, const body_sum *sums, bool add)
 {
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        if (!(sums[body].weight > 0))
+        if (!sums[body].acts)
             continue;
         tl_load load = load_of(m, body, &sums[body], add);
         if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || !tl_v3_finite(load.at))
@@ -543,10 +556,17 @@ static bool keep_others(const tl_model *m, const body_sum *sums, bool add, face_
         return false;
     for (size_t i = 0; i < m->face_load_count; i++) {
         uint32_t row = tl_block_row_quiet(m, m->face_loads[i].block);
-        if (row != TL_NO_ROW && (add || !(sums[m->blocks.body[row]].weight > 0)))
+        if (row != TL_NO_ROW && (add || !sums[m->blocks.body[row]].changes))
             loads->at[loads->count++] = m->face_loads[i];
     }
     return true;
+}
+
+/* Whether a body gets another load: nothing takes the place of nothing. */
+static bool changes_load(const plan *p, uint32_t body)
+{
+    const body_sum *sum = &p->sums[body];
+    return sum->acts || (sum->changes && !p->add && tl_body_loaded(&p->m->bodies, body));
 }
 
 /* Does what was planned: what can fail comes first. */
@@ -555,21 +575,21 @@ static tl_status carry_out(plan *p)
     tl_model *m = p->m;
     tl_status status = check_loads(m, p->sums, p->add);
     size_t replaced = 0;
-    if (status == TL_OK && p->loads.count && !keep_others(m, p->sums, p->add, &p->loads))
+    if (status == TL_OK && p->changes && !keep_others(m, p->sums, p->add, &p->loads))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK && p->outer.count)
         status = tl_outer_put(m, p->outer.at, p->outer.count, p->add);
-    if (status == TL_OK && p->loads.count)
+    if (status == TL_OK && p->changes)
         m->face_load_count = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
-        if (!(p->sums[body].weight > 0))
+        if (!changes_load(p, body))
             continue;
         replaced += !p->add && tl_body_loaded(&m->bodies, body);
         tl_load load = load_of(m, body, &p->sums[body], p->add);
         const tl_id id = m->bodies.id[body]; /* the table may move */
         status = tl_blocks_load(m, &id, 1, &load);
     }
-    if (status == TL_OK && p->loads.count) {
+    if (status == TL_OK && p->changes) {
         tl_face_loads_set(m, p->loads.at, p->loads.count, p->loads.capacity);
         p->loads.at = NULL;
     }

@@ -5,7 +5,6 @@
 #include "element/act.h"
 
 #include "base/columns.h"
-#include "base/inline.h"
 #include "base/inside.h"
 #include "element/batch.h"
 #include "element/carry.h"
@@ -25,20 +24,67 @@ typedef struct apply_job {
     tl_failure *failure;
 } apply_job;
 
-/* Present displacement and normal of a node: of one on a rigid body without a call, for most nodes are. */
-TL_INLINE tl_vec3 look_at(const tl_model *m, uint32_t row, tl_vec3 *normal)
+/* Cost only: nodes that are moved together; what they need of their bodies stays in the nearest cache. */
+#define TILE 64
+
+/* Displacements and rotations of the bodies of nodes, a column each. */
+typedef struct tile {
+    _Alignas(TL_ALIGN) double u[3][TILE], r[3][3][TILE];
+} tile;
+
+static void load_tile(const tl_model *m, uint32_t first, uint32_t count, tile *t)
 {
     const tl_node_table *n = &m->elements->nodes;
-    const uint32_t body = n->body[row];
-    if (body == TL_NO_ROW || m->bodies.mesh[body]) {
-        *normal = tl_node_normal(m, row);
-        return tl_node_moved(m, row);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t body = n->body[first + i];
+        const tl_pose *pose = &m->bodies.pose[body == TL_NO_ROW ? 0 : body];
+        t->u[0][i] = pose->u.x;
+        t->u[1][i] = pose->u.y;
+        t->u[2][i] = pose->u.z;
+        for (int k = 0; k < 3; k++)
+            for (int l = 0; l < 3; l++)
+                t->r[k][l][i] = pose->r.m[k][l];
     }
-    const tl_pose *pose = &m->bodies.pose[body];
-    const tl_vec3 outward = tl_columns_get(n->normal, row);
-    *normal = tl_v3_norm2(outward) == 0 ? tl_v3(0, 0, 0) : tl_m3_mul(&pose->r, outward);
-    const tl_vec3 now = tl_v3_add(pose->u, tl_m3_mul(&pose->r, tl_columns_get(n->local, row)));
-    return tl_v3_sub(now, tl_columns_get(n->base, row));
+}
+
+/* The motion of the nodes of a tile as rigid bodies carry them: of node `row`, in lane i of the chunk. `per`: 1/s. */
+TL_VECTORIZED static void move_tile(tl_node_table *n, size_t row, uint32_t count, const tile *t, double per,
+                                    tl_element_lanes *lanes, size_t i)
+{
+    const double *restrict p[3] = {n->local[0] + row, n->local[1] + row, n->local[2] + row};
+    const double *restrict o[3] = {n->normal[0] + row, n->normal[1] + row, n->normal[2] + row};
+    for (int k = 0; k < 3; k++) {
+        const double *restrict u = t->u[k], *restrict x = t->r[k][0], *restrict y = t->r[k][1];
+        const double *restrict z = t->r[k][2], *restrict base = n->base[k] + row;
+        double *restrict before = n->u[k] + row, *restrict du = lanes->du[k] + i, *restrict v = lanes->v[k] + i;
+        double *restrict normal = lanes->normal[k] + i;
+        for (uint32_t l = 0; l < count; l++) {
+            const double now = (u[l] + (x[l] * p[0][l] + y[l] * p[1][l] + z[l] * p[2][l])) - base[l];
+            const double moved = now - before[l];
+            before[l] = now;
+            du[l] = moved;
+            v[l] = per * moved;
+        }
+        for (uint32_t l = 0; l < count; l++) {
+            const double turned = x[l] * o[0][l] + y[l] * o[1][l] + z[l] * o[2][l];
+            const double none = o[0][l] * o[0][l] + o[1][l] * o[1][l] + o[2][l] * o[2][l];
+            normal[l] = none == 0 ? 0 : turned;
+        }
+    }
+}
+
+/* Of a node on the ground or in a zone, whose displacement had been `before`. */
+static void move_other(tl_model *m, uint32_t row, tl_vec3 before, double per, tl_element_lanes *lanes, size_t i)
+{
+    tl_columns_put(m->elements->nodes.u, row, before);
+    const tl_vec3 u = tl_node_moved(m, row), du = tl_v3_sub(u, before);
+    double *const to[3] = {lanes->du[0] + i, lanes->du[1] + i, lanes->du[2] + i};
+    double *const v[3] = {lanes->v[0] + i, lanes->v[1] + i, lanes->v[2] + i};
+    double *const normal[3] = {lanes->normal[0] + i, lanes->normal[1] + i, lanes->normal[2] + i};
+    tl_columns_put(to, 0, du);
+    tl_columns_put(v, 0, tl_v3_scale(per, du));
+    tl_columns_put(normal, 0, tl_node_normal(m, row));
+    tl_columns_put(m->elements->nodes.u, row, u);
 }
 
 /* Where the nodes of a chunk have gone since the last step. */
@@ -46,27 +92,51 @@ static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes
 {
     tl_node_table *n = &m->elements->nodes;
     const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
-    for (uint32_t row = of->node_begin, i = 0; row < of->node_end; row++, i++) {
-        tl_vec3 normal;
-        const tl_vec3 u = look_at(m, row, &normal), du = tl_v3_sub(u, tl_columns_get(n->u, row));
-        tl_columns_put(n->u, row, u);
-        lanes->du[0][i] = du.x;
-        lanes->du[1][i] = du.y;
-        lanes->du[2][i] = du.z;
-        lanes->v[0][i] = per * du.x;
-        lanes->v[1][i] = per * du.y;
-        lanes->v[2][i] = per * du.z;
-        lanes->normal[0][i] = normal.x;
-        lanes->normal[1][i] = normal.y;
-        lanes->normal[2][i] = normal.z;
+    for (uint32_t row = of->node_begin; row < of->node_end; row += TILE) {
+        tile t;
+        uint32_t others = 0, other[TILE];
+        tl_vec3 before[TILE];
+        const uint32_t left = of->node_end - row, count = left < TILE ? left : TILE, i = row - of->node_begin;
+        for (uint32_t l = 0; l < count; l++)
+            if (n->body[row + l] == TL_NO_ROW || m->bodies.mesh[n->body[row + l]]) {
+                before[others] = tl_columns_get(n->u, row + l);
+                other[others++] = l;
+            }
+        if (others < count) {
+            load_tile(m, row, count, &t);
+            move_tile(n, row, count, &t, per, lanes, i);
+        }
+        for (uint32_t k = 0; k < others; k++)
+            move_other(m, row + other[k], before[k], per, lanes, i + other[k]);
     }
+}
+
+/* Whether no number of a chunk is odd: sums of zeros, which are found fast. */
+TL_VECTORIZED static bool is_sound(const struct tl_elements *e, const tl_element_chunk *of)
+{
+    double sum[TL_LANES] = {0};
+    for (int k = 0; k < 3; k++) {
+        const double *restrict force = e->nodes.force[k];
+        uint32_t row = of->node_begin;
+        for (; row + TL_LANES <= of->node_end; row += TL_LANES)
+            for (uint32_t l = 0; l < TL_LANES; l++)
+                sum[l] += 0 * force[row + l];
+        for (; row < of->node_end; row++)
+            sum[0] += 0 * force[row];
+    }
+    for (uint32_t row = of->begin; row < of->end; row++)
+        sum[0] += 0 * (e->table.stored[row] + e->table.lost[row] + e->table.given[row]);
+    double all = 0;
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        all += sum[l];
+    return all == 0;
 }
 
 /* The first element of a chunk whose forces or energies are not finite; `end`: there is none. */
 static uint32_t find_odd(const struct tl_elements *e, const tl_element_chunk *of)
 {
     const tl_element_table *t = &e->table;
-    for (uint32_t row = of->begin; row < of->end; row++) {
+    for (uint32_t row = is_sound(e, of) ? of->end : of->begin; row < of->end; row++) {
         double sum = t->stored[row] + t->lost[row] + t->given[row];
         for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++)
             sum += 0 * (e->nodes.force[0][k] + e->nodes.force[1][k] + e->nodes.force[2][k]);
@@ -256,6 +326,7 @@ void tl_elements_push(tl_model *m)
 
 /* ---------------------------------------------------------------- stiffness -------------- */
 
+/* What holds two gridpoints to each other is twice as stiff for them as for one that it holds to the ground. */
 void tl_elements_stiffen(tl_model *m, double *damping)
 {
     const struct tl_elements *e = m->elements;
@@ -265,8 +336,8 @@ void tl_elements_stiffen(tl_model *m, double *damping)
         const double all = fabs(share[0]) + fabs(share[1]) + fabs(share[2]) + fabs(share[3]);
         for (int a = 0; a < 4; a++) {
             const uint32_t point = first + e->nodes.point[row][a];
-            m->zones->points.holds[point] += e->nodes.k[row] * all * fabs(share[a]);
-            damping[point] += e->nodes.c[row] * all * fabs(share[a]);
+            m->zones->points.holds[point] += 2 * e->nodes.k[row] * all * fabs(share[a]);
+            damping[point] += 2 * e->nodes.c[row] * all * fabs(share[a]);
         }
     }
 }
@@ -279,6 +350,8 @@ void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
         const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row));
         sum->stiffness.sum += e->nodes.k[row];
         sum->stiffness.r2 += e->nodes.k[row] * arm2;
+        sum->undamped.sum += e->nodes.k[row];
+        sum->undamped.r2 += e->nodes.k[row] * arm2;
         sum->damping.sum += e->nodes.c[row];
         sum->damping.r2 += e->nodes.c[row] * arm2;
     }

@@ -8,7 +8,7 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
     const struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     const tl_node_table *n = &e->nodes;
-    const size_t first = of->node_begin, count = of->node_end - first, bytes = count * sizeof(double);
+    const size_t first = of->node_begin, count = of->node_end - first;
     const bool many = count > TL_ELEMENT_NODES;
     double *const room = many ? e->room + 9 * first : lanes->own[0];
     const size_t stride = many ? count : TL_ELEMENT_NODES;
@@ -30,9 +30,6 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
         lanes->du[k] = room + (size_t)k * stride;
         lanes->v[k] = room + (size_t)(3 + k) * stride;
         lanes->normal[k] = room + (size_t)(6 + k) * stride;
-        memset(lanes->du[k], 0, bytes);
-        memset(lanes->v[k], 0, bytes);
-        memset(lanes->normal[k], 0, bytes);
         batch.rest[k] = n->rest[k] + first;
         batch.u[k] = n->u[k] + first;
         batch.du[k] = lanes->du[k];
@@ -48,4 +45,13 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
     for (uint32_t k = 0; k < t->state_columns; k++)
         lanes->element_state[k] = t->state[k] + of->begin;
     return batch;
+}
+
+void tl_element_lanes_stop(tl_element_lanes *lanes, size_t nodes)
+{
+    for (int k = 0; k < 3; k++) {
+        memset(lanes->du[k], 0, nodes * sizeof(double));
+        memset(lanes->v[k], 0, nodes * sizeof(double));
+        memset(lanes->normal[k], 0, nodes * sizeof(double));
+    }
 }

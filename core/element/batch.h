@@ -13,7 +13,9 @@ typedef struct tl_element_lanes {
     double *state[TL_ELEMENT_COLUMNS], *element_state[TL_ELEMENT_COLUMNS];
 } tl_element_lanes;
 
-/* A batch without motion: du, v and normal are 0, and u is what it was in the last step. */
+/* A batch whose du, v and normal are still to be found; u is what it was in the last step. */
 tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes);
+/* Makes du, v and normal of a batch 0: nothing moves. */
+void tl_element_lanes_stop(tl_element_lanes *lanes, size_t nodes);
 
 #endif

@@ -103,12 +103,13 @@ struct tl_elements {
      * come last, from steady_start[body] on. Both ascend. */
     uint32_t *use, *use_start, *steady_start;
     size_t use_capacity, use_start_capacity, steady_start_capacity;
-    bool any_steady;   /* some chunks are, */
-    bool all_steady;   /* or all */
-    bool resting;      /* steady elements were not asked for forces in the last step */
-    uint64_t asked;    /* counts steps in which some were */
-    uint64_t looked;   /* that count, when it was looked at how far blocks have slid */
-    uint32_t *carried; /* rows of nodes in zones, ascending */
+    bool any_steady;       /* some chunks are, */
+    bool all_steady;       /* or all */
+    bool resting;          /* steady elements were not asked for forces in the last step */
+    uint64_t asked;        /* counts steps in which some were */
+    uint64_t looked;       /* that count, when it was looked at how far blocks have slid */
+    double most_k, most_c; /* of all nodes, where there are lists, N/m and N s/m */
+    uint32_t *carried;     /* rows of nodes in zones, ascending */
     size_t carried_count, carried_capacity;
     void **memory; /* of elements, what their kinds keep between steps (memory.c); NULL: of none */
     unsigned char *memory_block;

@@ -206,6 +206,7 @@ static tl_status rate_chunk(tl_model *m, const tl_element_chunk *of)
     tl_node_table *n = &e->nodes;
     tl_element_lanes lanes;
     const tl_element_batch batch = tl_element_batch_of(m, of, &lanes);
+    tl_element_lanes_stop(&lanes, of->node_end - of->node_begin);
     memset(n->k + of->node_begin, 0, (of->node_end - of->node_begin) * sizeof *n->k);
     memset(n->c + of->node_begin, 0, (of->node_end - of->node_begin) * sizeof *n->c);
     tl_enter(set->kind, "stiffness");
@@ -221,6 +222,15 @@ static tl_status rate_chunk(tl_model *m, const tl_element_chunk *of)
     return TL_OK;
 }
 
+static void note_most(struct tl_elements *e)
+{
+    e->most_k = e->most_c = 0;
+    for (size_t row = 0; row < e->nodes.table.rows; row++) {
+        e->most_k = fmax(e->most_k, e->nodes.k[row]);
+        e->most_c = fmax(e->most_c, e->nodes.c[row]);
+    }
+}
+
 tl_status tl_elements_ready(tl_model *m)
 {
     struct tl_elements *e = m->elements;
@@ -231,7 +241,8 @@ tl_status tl_elements_ready(tl_model *m)
     tl_status status = tl_elements_lay_again(m);
     if (status != TL_OK)
         return status;
-    if (e->listed != e->version) {
+    const bool anew = e->listed != e->version;
+    if (anew) {
         if (!list_nodes(m) || !tl_steady_fit(m))
             return tl_fail_memory(&m->error);
         e->listed = e->version;
@@ -246,5 +257,7 @@ tl_status tl_elements_ready(tl_model *m)
         status = rate_chunk(m, &e->chunk[k]);
     if (status == TL_OK)
         e->rated = e->version;
+    if (anew && status == TL_OK)
+        note_most(e);
     return status;
 }

@@ -33,6 +33,7 @@ static void ask_sizes(const tl_model *m, size_t *bytes)
             continue;
         tl_element_lanes lanes;
         const tl_element_batch batch = tl_element_batch_of(m, of, &lanes);
+        tl_element_lanes_stop(&lanes, of->node_end - of->node_begin);
         tl_enter(set->kind, "memory");
         tl_element_ops_of(set)->memory(set->self, &batch, bytes + of->begin);
         tl_leave();

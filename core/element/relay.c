@@ -285,7 +285,7 @@ static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *lis
 }
 
 /* Tolerance: how far off the plane of three old nodes a new one lies at most that takes its states from all three, over
- * their distance. */
+ * their distance. Test: lua/test_water. */
 #define IN_PLANE 1e-3
 
 /* Limit: how far off 1/2 parts of three nodes are at a place that takes its states from them. On a triangle whose

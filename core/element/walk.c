@@ -23,6 +23,8 @@ void tl_elements_walk(struct tl_elements *e, const tl_walk *walk)
     VALUE(DERIVED, listed);
     VALUE(DERIVED, any_steady);
     VALUE(DERIVED, all_steady);
+    VALUE(DERIVED, most_k);
+    VALUE(DERIVED, most_c);
     VALUE(CACHE, rated);
     VALUE(CACHE, followed);
     VALUE(CACHE, zones);

@@ -24,9 +24,6 @@
 
 /* Limit: numbers of elements that a frame has. */
 #define MOST_FIELDS 32
-/* Tolerance: of 1 less the cosine between the normals of a node and of its face, and of their distance over the block's
- * size. */
-#define SAME 1e-6
 /* Corners of two faces, and one more by the line of zero pressure. */
 #define MOST_CORNERS (2 * TL_POLY_MAX_VERTICES + 1)
 #define PRESSURE "pressure"
@@ -202,18 +199,15 @@ static size_t wall_of(const tl_model *m, size_t node, tl_vec3 *corner)
         return 3;
     }
     const tl_poly *shape = m->blocks.shape[row];
-    const tl_vec3 normal = tl_columns_get(n->normal, node), local = tl_columns_get(n->local, node);
-    for (uint32_t f = 0; f < shape->face_count; f++) {
-        const tl_plane *p = &shape->plane[f];
-        if (!(tl_v3_dot(p->normal, normal) > 1 - SAME) ||
-            !(fabs(tl_v3_dot(p->normal, local) - p->offset) < SAME * m->blocks.size[row]))
-            continue;
-        const size_t count = tl_poly_face_size(shape, f);
-        for (size_t i = 0; i < count; i++)
-            corner[i] = tl_body_point(&m->bodies, m->blocks.body[row], shape->vertex[shape->loop[shape->start[f] + i]]);
-        return count;
-    }
-    return 0;
+    const tl_vec3 normal = tl_columns_get(n->normal, node);
+    uint32_t face = 0; /* a convex block has one face along a normal */
+    for (uint32_t f = 1; f < shape->face_count; f++)
+        if (tl_v3_dot(shape->plane[f].normal, normal) > tl_v3_dot(shape->plane[face].normal, normal))
+            face = f;
+    const size_t count = tl_poly_face_size(shape, face);
+    for (size_t i = 0; i < count; i++)
+        corner[i] = tl_body_point(&m->bodies, m->blocks.body[row], shape->vertex[shape->loop[shape->start[face] + i]]);
+    return count;
 }
 
 static tl_point2 seen(const view *v, tl_vec3 x)

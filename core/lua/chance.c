@@ -250,7 +250,7 @@ static int read_table(lua_State *L)
     table->columns = 3;
     if (!is_text || !tl_csv_read(table, text)) {
         lua_pushnil(L);
-        lua_pushstring(L, is_text ? table->why : "it holds a zero byte: it is no text");
+        lua_pushstring(L, is_text ? table->why : "it holds a zero byte: it is no text; save it as UTF-8");
         return 2;
     }
     qsort(table->at, table->rows, 3 * sizeof *table->at, tl_measured_order);

@@ -7,8 +7,10 @@
 #include "lua/item.h"
 #include "lua/living.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/elements.h>
 #include <talus/fields.h>
 
 /* ---------------------------------------------------------------- points and states -------
@@ -217,13 +219,33 @@ static tl_status contact_field(tl_model *model, const tl_lua_item *item, size_t 
     return tl_contact_field(model, item->name.contact, index, value);
 }
 
+/* ---------------------------------------------------------------- water ------------------ */
+
+/* Whether a name is that of a state of wet joints that contacts tell, too. */
+static bool is_of_water(const char *name)
+{
+    return strcmp(name, "pressure") == 0 || strcmp(name, "aperture") == 0 || strcmp(name, "flow") == 0;
+}
+
+/* NaN where a contact has no wet joint, or a dry one. */
+static tl_status water_values(tl_model *model, const tl_contact_name *contacts, size_t count, const char *name,
+                              double *out)
+{
+    return tl_contacts_element_values(model, contacts, count, name, "dry", out);
+}
+
 static tl_status contact_values(tl_model *model, const tl_lua_selection *of, const char *name, double *out,
                                 size_t *width)
 {
+    if (is_of_water(name)) {
+        *width = 1;
+        return out ? water_values(model, of->names, of->count, name, out) : TL_OK;
+    }
     return tl_contacts_values(model, of ? of->names : NULL, of ? of->count : 0, name, out, width);
 }
 
-/* `id`, exact; `blocks`: the pair of blocks, as blocks and not as numbers; `points` and `states`. */
+/* `id`, exact; `blocks`: the pair of blocks, as blocks and not as numbers; `points` and `states`; what wet joints
+ * tell. */
 static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item, const char *name)
 {
     const tl_contact_name contact = item->name.contact;
@@ -233,6 +255,15 @@ static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item
     }
     if (strcmp(name, "states") == 0) {
         push_contact_states(L, model, &contact);
+        return true;
+    }
+    if (is_of_water(name)) {
+        double value;
+        tl_lua_ok(L, model, water_values(model, &contact, 1, name, &value));
+        if (isnan(value))
+            lua_pushnil(L);
+        else
+            lua_pushnumber(L, value);
         return true;
     }
     const bool blocks = strcmp(name, "blocks") == 0;
@@ -261,6 +292,9 @@ static const tl_lua_key contact_extra_keys[] = {
     {"states", "{NAME = value}",
      "the states of its law: the mean of the points, weighted by their areas; the sum of a state "
      "that goes with the area"},
+    {"pressure", "number", "Pa, mean pressure of the water between its faces; nil, and NaN in lists, where it is dry"},
+    {"aperture", "number", "m, hydraulic aperture of the joint between its faces; nil without water that flows there"},
+    {"flow", "number", "m3/s, through the joint between its faces; likewise"},
     {NULL, NULL, NULL},
 };
 static const tl_lua_verb contact_verbs[] = {{.name = NULL}};

@@ -256,8 +256,10 @@ int tl_lua_model_flow(lua_State *L, tl_model *model)
             ids[joints++] = ids[i];
             continue;
         }
-        lua_createtable(L, 0, 2);
+        lua_createtable(L, 0, 3);
         tl_lua_set_number(L, "flow", state_of(L, model, ids[i], "flow"));
+        lua_pushboolean(L, state_of(L, model, ids[i], "closed") != 0);
+        lua_setfield(L, -2, "closed");
         if (role == HEAD)
             tl_lua_set_number(L, "head", state_of(L, model, ids[i], "head"));
         const int list = result + (role == HEAD ? 2 : 3);

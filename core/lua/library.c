@@ -294,7 +294,7 @@ static const tl_lua_key realisations_draws[] = {
     {"draw.seed(name)", "", "a seed for a model"},
     {"draw.correlated(names, {{mean, sd}, ...}, correlation)", "",
      "numbers of normal distributions, or with distribution = \"lognormal\" in a pair, correlated before they are cut "
-     "off by min and max; a number for two, else a matrix"},
+     "off by min and max; a number for two, else a matrix. With latin for at most 1,000,000 realisations"},
     {"draw.row", "", "number of the realisation"},
     {"set:probability(field)", "",
      "share of rows in which the field is true or not 0; low and high of its 95 % interval"},
@@ -413,7 +413,8 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .usage = "poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles(\"FILE\")",
      .doc = "Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, "
             "and weight "
-            "if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.",
+            "if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; "
+            "with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing.",
      .title = "Methods",
      .verbs = poles_methods},
     {.name = "realisations",

@@ -137,7 +137,8 @@ static const tl_lua_key keys[] = {
      "likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box"},
     {"drains", "list of {{x, y, z}, {x, y, z}, radius}", "likewise: holes of a radius, m, in which the pressure is 0"},
     {"steady", "true or false", "likewise: true, when left out, for water in balance; false: joints store water"},
-    {"every", "number", "likewise: steps between two solutions of steady flow; 100 when left out"},
+    {"every", "number",
+     "likewise: steps between two solutions; 100 of steady flow and 1 of stored water when left out"},
     {"bulk", "number", "likewise: bulk modulus of water that is stored, Pa; 2e9 when left out"},
     {"initial_head", "number", "likewise: head at the beginning where flow is not steady; without it pressure is 0, m"},
     {"drain_gap", "number", "mean opening beyond which a joint runs dry, m; 0.05 when left out"},
@@ -167,7 +168,8 @@ const tl_lua_topic tl_lua_water_topics[] = {
      .usage = "model:water(\"flow\", {aperture = 2e-4, steady = false}); result = model:flow()",
      .doc =
          "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
-         "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "
+         "given, of tables with flow, m3/s into the rock, and closed, true when it reaches no joint any more; joints, "
+         "the selection of wet joints, with area, aperture, "
          "flow, head and closed; and closed, how many of them reach neither a head nor a drain.",
      .arguments = 0,
      .method = tl_lua_model_flow},

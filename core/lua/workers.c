@@ -1,5 +1,5 @@
 /* workers.c - the module talus.workers, for modules of Talus that are written in Lua: processes that call a function
- * with the numbers of jobs, the file to which one process adds rows, and which shard this process is.
+ * with the numbers of jobs, the file to which one process adds rows, which shard this process is, and remarks.
  *
  * A worker is a copy of the Lua state that started it. It says nothing of runs, saves none, and its models have one
  * thread unless the script says otherwise. */
@@ -238,6 +238,13 @@ static int shard(lua_State *L)
     return 2;
 }
 
+/* remark(text): a line on the standard error, of a process that is not quiet. */
+static int remark(lua_State *L)
+{
+    tl_lua_log(tl_lua_options_of(L), luaL_checkstring(L, 1));
+    return 0;
+}
+
 static void make_type(lua_State *L, const char *name, const luaL_Reg *methods, lua_CFunction release)
 {
     if (luaL_newmetatable(L, name)) {
@@ -256,8 +263,8 @@ int tl_lua_workers_open(lua_State *L)
 {
     static const luaL_Reg of_workers[] = {{"give", give_job}, {"take", take_answer}, {NULL, NULL}};
     static const luaL_Reg of_logs[] = {{"read", read_log}, {"cut", cut_log}, {"add", add_to_log}, {NULL, NULL}};
-    static const luaL_Reg functions[] = {
-        {"start", start_workers}, {"log", open_log}, {"names", names}, {"shard", shard}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"start", start_workers}, {"log", open_log},  {"names", names},
+                                         {"shard", shard},         {"remark", remark}, {NULL, NULL}};
     make_type(L, WORKERS_TYPE, of_workers, end_workers);
     make_type(L, LOG_TYPE, of_logs, close_log);
     luaL_newlib(L, functions);

@@ -22,6 +22,7 @@ typedef struct tl_spread {
 /* What holds a body. */
 typedef struct tl_holding {
     tl_spread stiffness; /* N/m and N m */
+    tl_spread undamped;  /* what of it the damping of contacts leaves alone */
     tl_spread damping;   /* N s/m and N m s */
     double law;          /* the stiffest joint law of its contacts, Pa/m; 0: none */
     bool presses;        /* something may be pressed in further as the body goes on */

@@ -10,6 +10,7 @@
 #include "element/life.h"
 #include "element/set.h"
 #include "model/rows.h"
+#include "query/contact_fields.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -242,5 +243,82 @@ tl_status tl_elements_values(tl_model *m, const tl_id *elements, size_t count, c
             value.number[0] = m->elements->table.state[column][row];
         out[i] = value.number[0];
     }
+    return status;
+}
+
+/* ---------------------------------------------------------------- between walls ---------- */
+
+/* A contact that is asked for, by its blocks. */
+typedef struct asked_contact {
+    tl_id a, b;
+    size_t index;
+    double sum, weight;
+} asked_contact;
+
+static int compare_asked(const void *x, const void *y)
+{
+    const asked_contact *p = x, *q = y;
+    if (p->a != q->a)
+        return p->a < q->a ? -1 : 1;
+    return (p->b > q->b) - (p->b < q->b);
+}
+
+/* Whether an element lies between the walls of two blocks, which are given, the lower id first. */
+static bool find_blocks(const struct tl_elements *e, size_t row, asked_contact *of)
+{
+    const tl_node_table *n = &e->nodes;
+    const uint32_t first = e->table.node_begin[row], last = first + e->table.node_count[row] - 1;
+    const tl_id a = n->block[first], b = n->block[last];
+    of->a = a < b ? a : b;
+    of->b = a < b ? b : a;
+    return a != b && of->a != TL_NO_ID && of->b != TL_GONE && tl_v3_norm2(tl_columns_get(n->outward, first)) > 0 &&
+           tl_v3_norm2(tl_columns_get(n->outward, last)) > 0;
+}
+
+/* Adds a state of an element to the sums of a contact. */
+static void add_element(const struct tl_elements *e, size_t row, const char *name, const char *unless,
+                        asked_contact *to)
+{
+    const tl_kind *kind = e->set[e->table.set[row]].kind;
+    uint32_t column;
+    bool whole;
+    if (unless && tl_element_column(kind, unless, &column, &whole) && whole && e->table.state[column][row] != 0)
+        return;
+    if (!tl_element_column(kind, name, &column, &whole))
+        return;
+    for (uint32_t k = e->table.node_begin[row]; k < e->table.node_begin[row] + e->table.node_count[row]; k++) {
+        to->sum += e->nodes.weight[k] * (whole ? e->table.state[column][row] : e->nodes.state[column][k]);
+        to->weight += e->nodes.weight[k];
+    }
+}
+
+tl_status tl_contacts_element_values(tl_model *m, const tl_contact_name *contacts, size_t count, const char *name,
+                                     const char *unless, double *out)
+{
+    const struct tl_elements *e = m->elements;
+    asked_contact *asked = calloc(count + 1, sizeof *asked);
+    tl_status status = asked ? TL_OK : tl_fail_memory(&m->error);
+    uint32_t contact;
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        status = tl_contact_find(m, contacts[i], &contact);
+        asked[i] = (asked_contact){.a = contacts[i].a, .b = contacts[i].b, .index = i};
+    }
+    if (status == TL_OK)
+        tl_elements_follow(m);
+    if (status == TL_OK && count > 1)
+        qsort(asked, count, sizeof *asked, compare_asked);
+    for (size_t row = 0; status == TL_OK && e && count > 0 && row < e->table.table.rows; row++) {
+        asked_contact of;
+        asked_contact *to = find_blocks(e, row, &of) ? bsearch(&of, asked, count, sizeof *asked, compare_asked) : NULL;
+        while (to && to > asked && compare_asked(to - 1, to) == 0)
+            to--; /* a contact that is asked for twice: its first place has the sums */
+        if (to)
+            add_element(e, row, name, unless, to);
+    }
+    for (size_t i = 0, from = 0; status == TL_OK && i < count; i++) {
+        from = compare_asked(&asked[from], &asked[i]) == 0 ? from : i;
+        out[asked[i].index] = asked[from].weight > 0 ? asked[from].sum / asked[from].weight : NAN;
+    }
+    free(asked);
     return status;
 }

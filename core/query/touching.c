@@ -49,9 +49,11 @@ typedef struct worker {
 
 typedef struct search {
     const tl_model *m;
-    double *size;      /* of each body, m */
-    tl_bounds *bounds; /* by row */
-    uint32_t *order;   /* rows, by the lower ends of their bounds along `axis` */
+    double *size;       /* of each body, m */
+    place (*places)[2]; /* by row: as the block lay when it was made, as it lies now */
+    bool *still;        /* by row: the two are the same */
+    tl_bounds *bounds;  /* by row */
+    uint32_t *order;    /* rows, by the lower ends of their bounds along `axis` */
     size_t count;
     int axis;
     worker *workers;
@@ -119,12 +121,12 @@ bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t bod
 /* ---------------------------------------------------------------- pairs ------------------ */
 
 /* By how much a pair has moved against each other, m: the farthest corner of the smaller one. */
-static double moved_of(const tl_model *m, uint32_t a, uint32_t b)
+static double moved_of(const search *s, uint32_t a, uint32_t b)
 {
+    const tl_model *m = s->m;
     bool first = m->blocks.size[a] <= m->blocks.size[b];
     uint32_t small = first ? a : b, large = first ? b : a;
-    const place its[] = {place_of(m, small, false), place_of(m, small, true)};
-    const place frame[] = {place_of(m, large, false), place_of(m, large, true)};
+    const place *its = s->places[small], *frame = s->places[large];
     const tl_poly *shape = m->blocks.shape[small];
     double most = 0;
     for (uint32_t i = 0; i < shape->vertex_count; i++) {
@@ -135,13 +137,14 @@ static double moved_of(const tl_model *m, uint32_t a, uint32_t b)
     return most;
 }
 
-static tl_pair_view view_of(const tl_model *m, uint32_t a, uint32_t b, bool now)
+static tl_pair_view view_of(const search *s, uint32_t a, uint32_t b, bool now)
 {
-    const place at = place_of(m, a, now), other = place_of(m, b, now);
+    const tl_model *m = s->m;
+    const place *at = &s->places[a][now], *other = &s->places[b][now];
     return (tl_pair_view){.a = tl_pair_shape(m, a, b),
                           .b = tl_pair_shape(m, b, a),
-                          .turn = tl_m3_tproduct(&at.r, &other.r),
-                          .shift = tl_m3_tmul(&at.r, tl_v3_sub(other.x, at.x)),
+                          .turn = tl_m3_tproduct(&at->r, &other->r),
+                          .shift = tl_m3_tmul(&at->r, tl_v3_sub(other->x, at->x)),
                           .size = fmin(m->blocks.size[a], m->blocks.size[b]),
                           .mean_face = fmin(m->blocks.mean_face[a], m->blocks.mean_face[b])};
 }
@@ -154,20 +157,25 @@ typedef struct common {
     tl_tag joint;
 } common;
 
-/* Looks at a pair as it lies, or lay, unless that has been done. false: out of memory. */
-static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint32_t b, bool now, common *out)
+/* Looks at a pair as it lies, or lay, unless that has been done. Most pairs are apart, and their gap tells that. false:
+ * out of memory. */
+static bool look(const search *s, tl_narrow_scratch *scratch, uint32_t a, uint32_t b, bool now, common *out)
 {
     if (out->looked)
         return true;
     out->looked = true;
     const tl_touch_rule rule = {.reach = INFINITY};
-    tl_pair_view view = view_of(m, a, b, now);
+    tl_pair_view view = view_of(s, a, b, now);
+    tl_region_lows lows;
     tl_region region;
-    if (!tl_pair_place(&view, scratch) || !tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
+    if (!tl_pair_place(&view, scratch) || !tl_region_gap(&view, scratch, &lows))
+        return false;
+    if (lows.gap > GAP * view.size)
+        return true;
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
         return false;
     uint32_t fa = region.flush_a, fb = region.flush_b;
-    if (!region.flush || region.gap > GAP * view.size || region.flush_gap < -OVERLAP * view.size ||
-        tl_region_tilt(&view, fa, fb) > TILT)
+    if (!region.flush || region.flush_gap < -OVERLAP * view.size || tl_region_tilt(&view, fa, fb) > TILT)
         return true;
     out->face[0] = fa;
     out->face[1] = fb;
@@ -179,7 +187,7 @@ static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint
 /* Notes that the block in `row`, of a pair that does not touch now, has left what it lay on, if it did. */
 static bool note_left(const search *s, worker *w, uint32_t row, common *before, const uint32_t pair[2])
 {
-    if (!look(s->m, &w->scratch, pair[0], pair[1], false, before))
+    if (!look(s, &w->scratch, pair[0], pair[1], false, before))
         return false;
     if (!(before->area > 0))
         return true;
@@ -194,19 +202,22 @@ static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
     if (!tl_bounds_meet(&s->bounds[a], &s->bounds[b]) || s->m->blocks.body[a] == s->m->blocks.body[b])
         return true;
     const uint32_t row[] = {a, b};
-    const double moved = moved_of(s->m, a, b);
-    common before = {.looked = false}, now = {.looked = false};
+    const bool still = s->still[a] && s->still[b];
+    const double moved = still ? 0 : moved_of(s, a, b);
+    /* where a pair that has not moved did not touch, it does not touch now */
+    common before = {.looked = false}, now = {.looked = still};
     for (int side = 0; side < 2; side++) {
         const double share = moved / s->size[s->m->blocks.body[row[side]]];
         const bool kept = share < TL_TOUCH_KEPT;
-        if (kept && !look(s->m, &w->scratch, a, b, false, &before))
+        if (kept && !look(s, &w->scratch, a, b, false, &before))
             return false;
-        if (!(kept && before.area > 0) && !look(s->m, &w->scratch, a, b, true, &now))
+        if (!(kept && before.area > 0) && !look(s, &w->scratch, a, b, true, &now))
             return false;
         const common *it = kept && before.area > 0 ? &before : &now;
         /* of a block that has hardly moved a strip of another one's face, on which it has slid, is no joint */
         const tl_poly *shape = s->m->blocks.shape[row[side]];
-        double least = kept && it == &now ? 2 * TL_TOUCH_KEPT * tl_poly_face_area(shape, it->face[side]) : 0;
+        double least =
+            kept && it == &now && it->area > 0 ? 2 * TL_TOUCH_KEPT * tl_poly_face_area(shape, it->face[side]) : 0;
         const tl_touch touch = {row[side], it->face[side], row[1 - side], it->area, it->joint, share};
         if (it->area > least) {
             if (!tl_grow(&w->found.at, &w->found.capacity, w->found.count + 1, sizeof touch))
@@ -227,17 +238,17 @@ static double along(tl_vec3 v, int axis)
 }
 
 /* Bounds of a block at both places, grown by the gap. */
-static tl_bounds bounds_of(const tl_model *m, uint32_t row)
+static tl_bounds bounds_of(const search *s, uint32_t row)
 {
-    const tl_poly *shape = m->blocks.shape[row];
-    const place at[] = {place_of(m, row, false), place_of(m, row, true)};
+    const tl_poly *shape = s->m->blocks.shape[row];
+    const place *at = s->places[row];
     tl_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < 2 * shape->vertex_count; i++) {
         tl_vec3 x = tl_v3_add(at[i % 2].x, tl_m3_mul(&at[i % 2].r, shape->vertex[i / 2]));
         b.min = tl_v3_min(b.min, x);
         b.max = tl_v3_max(b.max, x);
     }
-    double growth = GAP * m->blocks.size[row];
+    double growth = GAP * s->m->blocks.size[row];
     tl_vec3 skin = {growth, growth, growth};
     return (tl_bounds){tl_v3_sub(b.min, skin), tl_v3_add(b.max, skin)};
 }
@@ -259,17 +270,22 @@ static bool prepare(search *s)
     const tl_model *m = s->m;
     size_t rows = m->blocks.table.rows;
     begin *begins = malloc((rows + 1) * sizeof *begins);
+    s->places = malloc((rows + 1) * sizeof *s->places);
+    s->still = malloc((rows + 1) * sizeof *s->still);
     s->bounds = malloc((rows + 1) * sizeof *s->bounds);
     s->order = malloc((rows + 1) * sizeof *s->order);
     s->size = malloc((m->bodies.table.rows + 1) * sizeof *s->size);
-    bool enough = begins && s->bounds && s->order && s->size;
+    bool enough = begins && s->places && s->still && s->bounds && s->order && s->size;
     for (uint32_t body = 0; body < m->bodies.table.rows && enough; body++)
         s->size[body] = tl_body_size(m, body);
     tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t row = 0; row < rows && enough; row++) {
         if (!m->blocks.stays[row])
             continue;
-        s->bounds[row] = bounds_of(m, row);
+        s->places[row][0] = place_of(m, row, false);
+        s->places[row][1] = place_of(m, row, true);
+        s->still[row] = memcmp(&s->places[row][0], &s->places[row][1], sizeof(place)) == 0;
+        s->bounds[row] = bounds_of(s, row);
         low = tl_v3_min(low, s->bounds[row].min);
         high = tl_v3_max(high, s->bounds[row].max);
         begins[s->count++].row = row;
@@ -353,6 +369,8 @@ tl_status tl_touches_find(tl_model *m, tl_touches *out)
         enough = collect(&s, threads, out);
     }
     free(s.size);
+    free(s.places);
+    free(s.still);
     free(s.bounds);
     free(s.order);
     for (unsigned k = 0; k < threads && s.workers; k++) {

@@ -4,7 +4,7 @@
 --
 -- Three joint sets are found among the measured planes. In each realisation the planes of each set take measured attitudes
 -- and other spacings, and all joints one friction. Block theory screens: where nothing removable is below a factor of 1.2,
--- nothing fails. Else the realisation is run until it rests or something has gone. The measured planes are made up.
+-- and nothing small below 1 that could let larger blocks go, nothing fails. Else the realisation is run until it rests or something has gone. The measured planes are made up.
 local talus = require "talus"
 
 local pit = {}
@@ -55,20 +55,29 @@ end
 
 -- The least factor of safety of what can be removed; whether nothing can fail.
 function pit.screen(model, draw)
-    local least = 10
+    local least, holds = 10, true
     for _, key in ipairs(model:keyblocks { friction = friction_of(draw) }) do
         if key.volume >= SMALLEST then
             least = math.min(least, key.safety)
         end
+        holds = holds and key.safety > (key.volume >= SMALLEST and 1.2 or 1)
     end
-    return { blocks = #model:blocks(), keyblock = least, failed = false, volume = 0 }, least > 1.2
+    return { blocks = #model:blocks(), keyblock = least, failed = false, volume = 0 }, holds
 end
 
--- Runs until the bench rests or has failed; the volume that has gone.
+-- Runs until the bench rests or something that counts has failed; smaller blocks that go first are deleted. The volume that has
+-- gone.
 function pit.measure(model, draw)
     model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS, friction = friction_of(draw) })
-    local run = model:relax { ratio = 1e-4, max_cycles = 20000 }
-    local failed = run.reason == "failure" and (run.volume or 0) >= SMALLEST
+    local run, small
+    repeat
+        run = model:relax { ratio = 1e-4, max_cycles = 20000 }
+        small = run.reason == "failure" and run.volume < SMALLEST
+        if small then
+            run.failing:delete()
+        end
+    until not small
+    local failed = run.reason == "failure"
     return { failed = failed, volume = failed and run.volume or 0 }
 end
 

@@ -559,8 +559,8 @@ function talus.help(topic) end
 ---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
 ---@field heads? talus.Vector[] m: Three points a head: least and largest corner of a box, and {head, 0, 0}.
 ---@field drains? talus.Vector[] m: Three points a drain: both ends, and {radius, 0, 0}.
----@field every? integer in [1, 1e+09], default 100: Steps between two solutions of steady flow.
----@field steady? boolean default true: Whether water is in balance, or also stored, with every = 1.
+---@field every? integer in [0, 1e+09], default 0: Steps between two solutions; 0: 100 of steady flow, 1 of stored water. With n of stored water the time step is n times shorter where walls move.
+---@field steady? boolean default true: Whether water is in balance, or also stored.
 
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
@@ -691,6 +691,9 @@ function Blocks:reset_displacement() end
 ---@field law_number integer place of its law in model:laws(), or 0
 ---@field points { position: talus.Vector, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point
 ---@field states table<string, number|string|boolean|talus.Vector> the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
+---@field pressure number Pa, mean pressure of the water between its faces; nil, and NaN in lists, where it is dry
+---@field aperture number m, hydraulic aperture of the joint between its faces; nil without water that flows there
+---@field flow number m3/s, through the joint between its faces; likewise
 local Contact = {}
 
 --- A selection of contacts: a snapshot, in ascending order of their blocks.
@@ -1683,7 +1686,7 @@ function talus.convert(options) end
 ---@param options talus.PlotOptions
 function talus.plot(options) end
 
---- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.
+--- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing.
 ---
 ---     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE")
 ---@param options? table
@@ -2052,12 +2055,12 @@ function Model:elements(options) end
 ---@field heads? { inside: { min: talus.Vector, max: talus.Vector }, min: talus.Vector, max: talus.Vector, head: number }[] likewise: heads, m above z = 0, of the edges of wet joints whose middle lies in a box
 ---@field drains? (talus.Vector|number)[][] likewise: holes of a radius, m, in which the pressure is 0
 ---@field steady? boolean likewise: true, when left out, for water in balance; false: joints store water
----@field every? number likewise: steps between two solutions of steady flow; 100 when left out
+---@field every? number likewise: steps between two solutions; 100 of steady flow and 1 of stored water when left out
 ---@field bulk? number likewise: bulk modulus of water that is stored, Pa; 2e9 when left out
 ---@field initial_head? number likewise: head at the beginning where flow is not steady; without it pressure is 0, m
 ---@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out
 
---- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. Of "flow" pressures are found by the cubic law, between heads and drains, with apertures that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
+--- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. Of "flow" pressures are found by the cubic law, between heads and drains, with apertures that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure.
 ---
 ---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")  or  model:water("flow", {aperture = 2e-4, heads = {{inside = {min = {-2, -2, -2}, max = {2, 2, 2}}, head = 20}}})
 ---@param name string
@@ -2069,23 +2072,7 @@ function Model:elements(options) end
 ---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
 function Model:water(name, options) end
 
----@class (exact) talus.FlowOptions
----@field aperture number m, in (0, 1]: Hydraulic aperture of walls that just touch.
----@field residual? number m, in (0, 1], default 2e-05: Least aperture, of a joint that is pressed.
----@field maximum? number m, in (0, 1], default 0.002: Largest aperture that counts.
----@field viscosity? number Pa s, in (0, 1e+50], default 0.001: Of the water.
----@field unit_weight? number N/m3, in (0, 1e+50], default 9810: Of the water.
----@field bulk? number Pa, in (0, 1e+50], default 2000000000: Bulk modulus of the water, where flow is not steady.
----@field initial_head? number m: Head at the beginning where flow is not steady; without it the pressure begins at 0.
----@field drain_gap? number m, in (0, 1e+50], default 0.05: Mean opening beyond which a joint is dry.
----@field apertures? string Other apertures, of joints, sets or planes: "A=1e-4,B:2=3e-4", m; the last that fits counts.
----@field joints? string default "*": Joints, sets or planes of them, separated by commas.
----@field heads? talus.Vector[] m: Three points a head: least and largest corner of a box, and {head, 0, 0}.
----@field drains? talus.Vector[] m: Three points a drain: both ends, and {radius, 0, 0}.
----@field every? integer in [1, 1e+09], default 100: Steps between two solutions of steady flow.
----@field steady? boolean default true: Whether water is in balance, or also stored, with every = 1.
-
---- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain. element 'flow' Water that flows in joints: model:water("flow").
+--- What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were given, of tables with flow, m3/s into the rock, and closed, true when it reaches no joint any more; joints, the selection of wet joints, with area, aperture, flow, head and closed; and closed, how many of them reach neither a head nor a drain.
 ---
 ---     model:water("flow", {aperture = 2e-4, steady = false}); result = model:flow()
 ---@return { closed: integer, drains: table, heads: table, joints: talus.Elements }

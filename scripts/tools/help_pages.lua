@@ -82,7 +82,7 @@ end
 function pages.split_row(section, row)
     if section.title == "Parameters" then
         return pages.split_parameter(row.text)
-    elseif section.title:match("^Fields of a ") then
+    elseif section.title:match "^Fields of a " or section.title:match "^Keys of a " then
         return row.text[1], table.concat(row.text, " ", 2)
     end
     return nil, table.concat(row.text, " ")
@@ -90,7 +90,7 @@ end
 
 local function is_kind(line)
     return line:match("^law '") or line:match("^damping '") or line:match("^generator '") or line:match("^screen '") or
-        line:match("^solid '")
+        line:match("^solid '") or line:match("^element '")
 end
 
 -- The topics and plugins in the order of the overview: sections { title =, rows = }.

@@ -3,8 +3,8 @@
 
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
-NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output terrain examples
-yade beside million cuts solids zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest realisations edits output terrain
+examples yade beside million cuts solids zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
@@ -187,6 +187,11 @@ def rest(r):
     r.script("rest")
 
 
+def realisations(r):
+    """Rows of a slope whose joints are drawn anew, screened by keyblocks."""
+    r.script("realisations", f"rows={300 if r.quick else 10000}", "workers=1,2")
+
+
 def output(r):
     """Where there is one, in a folder that is memory: the figures are of the program and not of the disk."""
     r.script("output", f"blocks={5000 if r.quick else 100000}", "threads=1,2", f"reps={3 if r.quick else 5}",
@@ -242,9 +247,8 @@ def deformable(r):
     r.program("deformable", *(["quick"] if r.quick else []), env={"TALUS_PLUGIN_PATH": str(r.build / "plugins")})
 
 
-JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest, edits,
-                                      output, terrain,
-                                      examples, yade, beside, million, cuts, solids, zones, deformable)}
+JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest,
+                                      realisations, edits, output, terrain, examples, yade, beside, million, cuts, solids, zones, deformable)}
 
 
 # ---------------------------------------------------------------------- figures

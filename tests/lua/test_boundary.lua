@@ -363,3 +363,38 @@ do
     check.refused(m, function() m:boundary(wall) end, "unit_weight")
     check.near(m:boundary { facing = { 1, 0, 0 }, water_level = 0 }.force[1], -9810 * 3 * 2, 1e-8)
 end
+
+-- A reservoir that is lowered, or taken away, leaves no load on faces that are above it now.
+do
+    local function tower(level)
+        local m = talus.model { gravity = { 0, 0, -10 } }
+        for k = 1, 3 do
+            m:generate("box", { min = { 0, 0, k - 1 }, max = { 4, 1, k }, density = 2500 })
+        end
+        m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+        for _, height in ipairs(level) do
+            m:boundary { facing = { -1, 0, 0 }, water_level = height, unit_weight = 1e4 }
+        end
+        return m
+    end
+    local low, lowered = tower { 1.5 }, tower { 3, 2.2, 1.5 }
+    check.equal(lowered:state_hash(), low:state_hash())
+    lowered:boundary { facing = { -1, 0, 0 }, pressure = 0 }
+    check.equal(lowered:state_hash(), tower {}:state_hash())
+    low:boundary { facing = { -1, 0, 0 }, pressure = 0, add = true }
+    check.equal(low:state_hash(), tower { 1.5 }:state_hash())
+    -- A load without a force in all, about the middle of the face, is one, too.
+    local turned = tower {}
+    turned:boundary { facing = { -1, 0, 0 }, box = { min = { 0, 0, 1 }, max = { 0, 1, 2 } }, gradient = { xx = 1e4 },
+        at = { 0, 0, 1.5 } }
+    check.holds(turned:state_hash() ~= tower {}:state_hash(), "a moment")
+    -- Cuts share out what is there now.
+    for _, m in ipairs { low, lowered } do
+        m:generate("joint", { joint = "J", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 } })
+        m:damping "local"
+        m:blocks { where = function(b) return b.centroid[3] < 0.5 end }:fix()
+        m:solve { ratio = 1e-6, measure = "local" }
+    end
+    check.holds(math.abs(low:blocks()[#low:blocks()].displacement[1]) > 1e-8)
+    check.near(lowered:blocks()[#lowered:blocks()].displacement[1], 0, 1e-12)
+end

@@ -131,6 +131,11 @@ local function text_stl(triangles)
     return table.concat(lines, "\r\n")
 end
 
+-- The same with all between the first line and the last in one line.
+local function joined_stl(triangles)
+    return (text_stl(triangles):gsub("\r?\n", " "):gsub("of it ", "of it\n", 1))
+end
+
 local function obj(triangles)
     local lines = { "# a comment", "o thing", "vn 0 0 1" }
     for i, t in ipairs(triangles) do
@@ -143,7 +148,7 @@ local function obj(triangles)
     return table.concat(lines, "\n")
 end
 
-local writers = { { ".stl", binary_stl }, { "_text.STL", text_stl }, { ".obj", obj } }
+local writers = { { ".stl", binary_stl }, { "_text.STL", text_stl }, { "_joined.stl", joined_stl }, { ".obj", obj } }
 
 local function import(path, values)
     local model = talus.model {}

@@ -215,7 +215,7 @@ refused({ series = good, x_axis = { range = { 2, 1 } } }, "must ascend and be fi
 refused({ series = good, x_axis = { range = { 0 / 0, 1 } } }, "must ascend and be finite")
 refused({ series = good, x_axis = { range = 3 } }, "range must be a list of two numbers")
 refused({ series = good, x_axis = { range = { 0, 1 }, log = true } }, "of a logarithmic axis must be above 0")
-refused({ series = good, width = 1e9 }, "width = 1000000000.0 is outside [200, 10000]")
+refused({ series = good, width = 1e9 }, "width = 1000000000 is outside [200, 10000]")
 refused({ series = good, width = 0 / 0 }, "width")
 refused({ series = good, title = 3 }, "title must be text")
 refused({ series = good, file = folder }, "plot: cannot write")

@@ -111,18 +111,31 @@ do
     local q = talus.poles(write("semi.csv", "\u{feff}# bench 3\nname;Dip;Dip Direction\r\nx;30;120\r\n\r\n\"y\";\"40\";130\r\n"))
     check.equal(#q, 2)
     check.near(q.planes[2], { 40, 130, 1 }, 0)
+    -- as spreadsheets write them: decimal commas, separators in quotes, empty rows
+    q = talus.poles(write("commas.csv", "Note;DIP;dip-direction\r\n\"a; \"\"b\"\"\";30,5;120\r\n;;\r\n;\"40,25\";\"130\"\r\n"))
+    check.equal(#q, 2)
+    check.near(q.planes[1], { 30.5, 120, 1 }, 0)
+    check.near(q.planes[2], { 40.25, 130, 1 }, 0)
+    q = talus.poles(write("tabs.csv", "dip\tdip direction\tnote\n30,5\t120\t\"1\t2\"\n31\t121\t\n"))
+    check.near(q.planes[1], { 30.5, 120, 1 }, 0)
     for _, case in ipairs {
         { "dip,dip_direction\n30,120\n95,10\n", "line 3, column 'dip': 95 is outside [0, 90]" },
         { "dip,dip_direction\n30,1o0\n", "line 2, column 'dip_direction': '1o0' is no number" },
         { "dip,dip_direction\n30\n", "line 2 has 1 cells, the line of names has 2" },
-        { "dip,dip_direction\n30,\n", "line 2, column 'dip_direction': '' is no number" },
-        { "dip,azimuth\n30,100\n", "line 1 does not name a column 'dip_direction'" },
+        { "dip,dip_direction\n30,\n", "line 2, column 'dip_direction': the cell is empty" },
+        { "dip,azimuth\n30,100\n", "line 1 does not name a column 'dip_direction', but has 'dip,azimuth': the first" },
+        { "dip;dip_direction\n30,5;100\n31.5;110\n", "line 3, column 'dip': '31.5': numbers are to have decimal points or" },
+        { "dip;dip_direction\n1.030,5;100\n", "line 2, column 'dip': '1.030,5': numbers are to have decimal points or" },
+        { "dip;dip_direction\n30,5,1;100\n", "line 2, column 'dip': '30,5,1' is no number" },
+        { "dip,dip_direction\n\"30,5\",100\n", "'30,5' is no number: decimal commas need semicolons between cells" },
+        { "dip,dip_direction\n30,5,100,0\n", "line 2 has 4 cells, the line of names has 2 (decimal commas need semicolons" },
+        { "dip,dip_direction,note\n30,100,\"a\nb\"\n", "line 3, column 'dip': 'b\"' is no number" },
         { "dip,dip_direction,dip\n30,100,3\n", "line 1 names a column twice" },
         { "dip,dip_direction,weight\n30,100,0\n", "line 2, column 'weight': 0 is outside [1e-09, 1e+09]" },
         { "dip,dip_direction\n30,nan\n", "'nan' is no number" },
         { "", "it is empty" },
         { "dip,dip_direction\n", "it has no row after the line of names" },
-        { "dip,dip_direction\n30,100\n\0", "it holds a zero byte" },
+        { "dip,dip_direction\n30,100\n\0", "it holds a zero byte: it is no text; save it as UTF-8" },
         { "30,100\n40,100\n", "line 1 does not name a column 'dip'" },
     } do
         local path = write("bad.csv", case[1])

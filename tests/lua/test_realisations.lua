@@ -189,28 +189,48 @@ end
 local whole = folder .. "/whole.csv"
 os.remove(whole)
 check.holds(shell("'%s' --quiet '%s' '%s' 1", program, script, whole))
+-- that rows are not made again is said
+check.holds(shell("'%s' '%s' '%s' 1 2>'%s/said'", program, script, whole, folder))
+check.holds(read(folder .. "/said"):find "whole.csv' has 150 rows already, which are not made again")
 
--- Killed at any moment it goes on, to the same bytes: 100 kills in all, one in ten of them in a short test.
+-- Killed at any moment it goes on, to the same bytes: 100 kills in all, one in ten of them in a short test. The clock of a kill
+-- begins with the first bytes of the file, and has steps that share nothing with that of rows.
 do
-    local path, kills = folder .. "/killed.csv", check.cases(100)
+    local WORKERS = { 1, 2, 3, 5 }
+    local path, kills, partly = folder .. "/killed.csv", check.cases(100), 0
     for kill = 1, kills do
         os.remove(path)
-        local shares = 1 + kill % 3
-        for _ = 1, shares do
-            -- the clock that kills has steps that share nothing with that of rows
-            shell("'%s' --quiet '%s' '%s' %d & p=$!; sleep 0.0%02d; kill -9 $p 2>/dev/null; wait $p 2>/dev/null", program, script,
-                path, 1 + kill % 3, 11 + (37 * kill) % 79)
+        for _ = 1, 1 + kill % 3 do
+            shell("'%s' --quiet '%s' '%s' %d & p=$!; while kill -0 $p 2>/dev/null && ! [ -s '%s' ]; do :; done; " ..
+                "sleep 0.0%02d; kill -9 $p 2>/dev/null; wait $p 2>/dev/null", program, script, path, WORKERS[1 + kill % 4], path,
+                (37 * kill) % 31)
         end
-        -- an end in the middle of a line
-        if kill % 5 == 0 and exists(path) then
-            local cut = read(path)
-            local torn = assert(io.open(path, "wb"))
-            torn:write(cut:sub(1, math.max(#cut - 1 - kill % 40, 0)))
-            torn:close()
-        end
-        check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+        partly = partly + (exists(path) and #read(path) < #read(whole) and 1 or 0)
+        check.holds(shell("'%s' --quiet '%s' '%s' %d", program, script, path, WORKERS[1 + kill // 4 % 4]))
         check.equal(read(path), read(whole))
     end
+    check.holds(partly > 0, "some kill before the end")
+end
+
+-- A file that ends anywhere, as a full disk leaves it, is gone on with: in the first line, in the names, in and between rows.
+do
+    local path, text = folder .. "/torn.csv", read(whole)
+    local first = text:find "\n"
+    local names = text:find("\n", first + 1, true)
+    for _, bytes in ipairs { 0, 1, first - 1, first, first + 3, names - 1, names, names + 1, names + 9, #text // 2, #text - 1, #text } do
+        local torn = assert(io.open(path, "wb"))
+        torn:write(text:sub(1, bytes))
+        torn:close()
+        check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+        check.equal(read(path), text)
+    end
+    -- a file as large as it may be: what is in it is kept, and gone on with
+    os.remove(path)
+    check.holds(not shell("(ulimit -f 8; '%s' --quiet '%s' '%s' 2 2>'%s/said')", program, script, path, folder))
+    check.holds(read(folder .. "/said"):find "cannot write '.*torn.csv': File too large")
+    check.holds(#read(path) > 0 and text:sub(1, #read(path)) == read(path))
+    check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+    check.equal(read(path), text)
 end
 
 -- ------------------------------------------------------------------ shards
@@ -238,6 +258,15 @@ do
     good, said = merge()
     check.holds(good and said:find "150 rows of 4 files")
     check.equal(read(path), read(whole))
+    -- whatever the number of shards
+    for count = 1, check.cases(70) >= 70 and 7 or 3 do
+        os.remove(path)
+        for i = 1, count do
+            check.holds(shell("'%s' run --quiet --shard %d/%d '%s' '%s' %d", program, i, count, script, path .. count, 1 + i % 2))
+        end
+        check.holds(shell("'%s' merge '%s' 2>'%s/said'", program, path .. count, folder))
+        check.equal(read(path .. count), read(whole))
+    end
     -- errors are counted among all rows: one that one process bears ends no shard, however few rows that has
     local script_of_one = folder .. "/one_error.lua"
     local text = assert(io.open(script_of_one, "wb"))
@@ -358,6 +387,61 @@ do
     check.equal(#seen + (seen[0] and 1 or 0), 400)
 end
 
+-- Of a Latin hypercube each n-th part of every distribution has one row: cut off or not, correlated or not.
+do
+    local chance = require "talus.chance"
+    local N, shares = 300, {}
+    local function add(name, family, range, a, b, c)
+        local from, to = range and range.min or -math.huge, range and range.max or math.huge
+        shares[name] = function(stratum) return chance.quantile(family, stratum / N, a, b, c or 0, from, to) end
+    end
+    for _, case in ipairs { { "normal", 10, 2 }, { "lognormal", 10, 2 }, { "normal", 10, 2, { min = 9, max = 13 } },
+        { "lognormal", 10, 2, { min = 9 } } } do
+        local family, mean, sd, range = table.unpack(case)
+        local name = family .. (range and " cut" or "")
+        add(name, family, range, mean, sd)
+        add("with " .. name, family, range, mean, sd)
+        add("against " .. name, family, range, mean, sd)
+    end
+    add("uniform", "uniform", nil, 0, 1)
+    add("triangular", "triangular", nil, 0, 1, 4)
+    add("power_law", "power_law", nil, 2.5, 1, 20)
+    local function build(draw)
+        for name in pairs(shares) do
+            local family, cut = name:match "^(%a+)( ?c?u?t?)$"
+            local range = cut == " cut" and (family == "normal" and { min = 9, max = 13 } or { min = 9 }) or nil
+            if family == "normal" or family == "lognormal" then
+                draw[family](name, 10, 2, range)
+                local pair = { 10, 2, distribution = family, min = range and range.min, max = range and range.max }
+                draw.correlated({ name .. " first", "with " .. name, "against " .. name }, { { 0, 1 }, pair, pair },
+                    { { 1, 0.6, -0.3 }, { 0.6, 1, 0 }, { -0.3, 0, 1 } })
+            end
+        end
+        draw.uniform("uniform", 0, 1)
+        draw.triangular("triangular", 0, 1, 4)
+        draw.power_law("power_law", 2.5, 1, 20)
+        return empty
+    end
+    local set = run { number = N, latin = true, seed = 6, workers = 2, build = build, measure = function() return { made = true } end }
+    local rows = set:rows()
+    for name, value in pairs(shares) do
+        table.sort(rows, function(a, b) return a[name] < b[name] end)
+        for i, row in ipairs(rows) do
+            check.holds((i == 1 or row[name] >= value(i - 1)) and (i == N or row[name] <= value(i)), name)
+        end
+    end
+    for _, item in ipairs(set:sensitivity "normal first") do
+        if item.name == "with normal" or item.name == "against normal" then
+            check.near(item.correlation, item.name == "with normal" and 0.6 or -0.3, 0.12)
+        end
+    end
+    local good, message = pcall(run, { number = 1000001, latin = true, build = function(draw)
+        draw.correlated({ "a", "b" }, { { 0, 1 }, { 0, 1 } }, 0.5)
+        return empty
+    end })
+    check.holds(not good and message:find "with latin = true correlated draws are for at most 1000000 realisations, not 1000001$")
+end
+
 -- ------------------------------------------------------------------ statistics
 
 do
@@ -375,7 +459,29 @@ do
     local histogram = set:histogram("v", 3)
     check.near(histogram.edges, { 1, 4, 7, 10 }, 0)
     check.near(histogram.counts, { 3, 0, 1 }, 0)
+    -- numbers that are none count nowhere; infinite ones are the last or the first
+    local odd = { math.huge, 0 / 0, 1, -math.huge, 3 }
+    local far = run { number = 5, build = function() return empty end, measure = function(_, draw)
+        return { v = odd[draw.row], top = math.max(odd[draw.row], 1), all = 0 / 0 }
+    end }
+    check.equal(far:quantile("v", 0), -math.huge)
+    check.equal(far:quantile("v", 0.1), -math.huge)
+    check.equal(far:quantile("v", 1 / 3), 1)
+    check.equal(far:quantile("v", 0.5), 2.0)
+    check.equal(far:quantile("v", 2 / 3), 3)
+    check.equal(far:quantile("v", 0.9), math.huge)
+    check.equal(far:mean "top", math.huge)
+    -- one row
+    local one = run { number = 1, build = function() return empty end, measure = function() return { v = 7, yes = true, no = false } end }
+    check.equal(one:quantile("v", 0.3), 7)
+    check.near({ one:probability "yes" }, { 1, 0.025, 1 }, 1e-14)
+    check.near({ one:probability "no" }, { 0, 0, 0.975 }, 1e-14)
     for _, case in ipairs {
+        { function() far:sd "top" end, "sd: 'top' has numbers that are not finite" },
+        { function() far:mean "all" end, "mean: no realisation has a number 'all'" },
+        { function() far:probability "v" end, "probability: realisation 2 has no 'v' that is true, false or a number" },
+        { function() far:histogram "top" end, "histogram: 'top' has numbers that are not finite" },
+        { function() one:sd "v" end, "sd: 'v' has one number only" },
         { function() set:mean "w" end, "mean: no realisation has a field 'w'" },
         { function() set:mean() end, "mean: name a field" },
         { function() set:quantile("v", 2) end, "quantile: the share must be in [0, 1], not the number 2" },
@@ -390,7 +496,7 @@ end
 
 for _, case in ipairs {
     { {}, "'number' is missing" },
-    { { number = 0 }, "number = 0 is outside [1, 1000000000.0]" },
+    { { number = 0 }, "number = 0 is outside [1, 1000000000]" },
     { { number = 1.5 }, "number = 1.5 must be a whole number" },
     { { number = 3, workers = 300 }, "workers = 300 is outside [1, 256]" },
     { { number = 3, sed = 1 }, "unknown parameter 'sed'; did you mean 'seed'?" },
@@ -405,6 +511,8 @@ for _, case in ipairs {
     { { number = 3, stop_when = { field = "failed" } }, "stop_when: 'half_width' is missing" },
     { { number = 3, file = "/dev/null" }, "it is no regular file" },
     { { number = 61, seed = 4, file = folder .. "/rows_1.csv" }, "is of number = 60, seed = 4, latin = false, not of 61, 4, false" },
+    { { number = 60, seed = 5, file = folder .. "/rows_1.csv" }, "is of number = 60, seed = 4, latin = false, not of 60, 5, false" },
+    { { number = 60, seed = 4, latin = true, file = folder .. "/rows_1.csv" }, "not of 60, 4, true" },
     { { number = 3, file = script }, "is no file of realisations: give another name" },
 } do
     check.raises(function()

@@ -244,6 +244,8 @@ end
 triangles("open", { tent[1], tent[2], tent[3] }, "open of the plan of a block")
 triangles("over", with { { 4, 1, 9 }, { 6, 1, 9 }, { 5, 2, 9 } }, "triangles 1 and 5 lie one above the other")
 triangles("wall", with { { 0, 0, 2 }, { 10, 0, 2 }, { 5, 0, 0 } }, "triangle 5 at {0, 0, 2}: it is vertical")
+-- from its first corner it has an area, but from its last, which is taken for the first, none
+triangles("needle", with { { 1e-12, 1e-12, 1e-12 }, { 3e-12, 1e-12, 1e-12 }, { -8388640, 0, 0 } }, "it is vertical or has no area")
 triangles("far", with { { 0, 0, 2 }, { 2e9, 0, 2 }, { 5, 9, 0 } }, "triangle 5: the corner {2e+09, 0, 2} is outside")
 local text, binary = stl(tent)
 for _, bad in ipairs { { text:sub(1, -26), "ends in triangle 4" }, { binary:sub(1, -2), "truncated" }, { "abc", "no STL" },

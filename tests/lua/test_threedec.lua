@@ -268,6 +268,8 @@ check.equal(table.concat(frictions, " "), "20.0 30.0")
 -- ---------------------------------------------------------------- values and FISH --------
 
 check.equal(line "model gravity 0 0 [-9.81]", "model.gravity = { 0, 0, -9.81 }")
+check.equal(line "model gravity -10", "model.gravity = { 0, 0, -(-10) }") -- two signs would begin a comment of Lua
+check.equal(line("model gravity [g]", "[g = 2]\n[g = -g]"), "model.gravity = { 0, 0, -g }")
 check.equal(line("block property density [2*rho]", "[rho = 1250]"), "model:blocks {}:set { density = 2 * rho }")
 check.equal(line("block property density @rho", "[global rho = 1250.0]"), "model:blocks {}:set { density = rho }")
 check.equal(line "prop mat 1 dens 2.5d3\nblock property density 1.e3", "model:blocks {}:set { density = 1e3 }")
@@ -275,7 +277,7 @@ check.equal(line("block cre bri [-a] [a]", "[a = 3/2]"), -- whole numbers
     "model:generate(\"box\", { min = { -a, -a, -a }, max = { a, a, a }, density = 1000 })")
 check.equal(lines("[a = 3/2]\n[b = 3.0/2]\n[c = (a + b)^2 - -1]\n[d = math.sqrt(c) * math.sin(math.pi/6.0)]")[3], "local c = (a + b)^2 - -1")
 local values = { "3/2 1", "-3/2 -1", "3.0/2 1.5", "2+3*4 14", "(2+3)*4 20", "2^3^2 64", "-2^2 -4", "10-4-3 3", "abs(-2) 2", "math.max(1,5,3) 5",
-    "int(2.7) 2", "int(-2.7) -2", "float(1)/4 0.25", "12/2/3 2", "2/3*3 0", "8-(4-3) 7", "1-2*3 -5", "2.0/(4/2) 1.0" }
+    "int(2.7) 2", "int(-2.7) -2", "float(1)/4 0.25", "12/2/3 2", "2/3*3 0", "8-(4-3) 7", "-(-2) 2", "3-(-(-2)) 1", "--2 2", "1-2*3 -5", "2.0/(4/2) 1.0" }
 for _, row in ipairs(values) do
     local expression, value = row:match "^(%S+) (%S+)$"
     local text = lines("[v = " .. expression .. "]")[1]

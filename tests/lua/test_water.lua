@@ -312,3 +312,39 @@ do
         check.equal(one:state_hash(), kept:state_hash())
     end
 end
+
+-- Parts of a wall have the pressure of the whole, linear on it. A new wall off its plane has that of the nearest node.
+do
+    local m = talus.model { gravity = { 0, 0, 0 } }
+    m:generate("box", { min = { 0, 0, -1 }, max = { 8, 1, 0 }, density = 2500, group = "floor" })
+    m:generate("box", { min = { 0, 0, 0 }, max = { 8, 1, 1 }, density = 2500, group = "top" })
+    m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+    m:blocks():fix()
+    m:water("field", { pressure = function(x) return 1e4 * (x + 1) end })
+    local had = {}
+    for _, node in ipairs(m:elements()[1].nodes) do
+        had[#had + 1] = node.source
+    end
+    m:blocks { group = "floor" }:hide()
+    m:generate("joint", { joint = "N", dip = 90, dip_direction = 90, origin = { 3, 0, 0 } })
+    m:blocks { hidden = true }:show()
+    m:cycle(1)
+    local level, upright = 0, 0
+    for _, element in ipairs(m:elements()) do
+        for _, node in ipairs(element.nodes) do
+            if math.abs(node.rest[3]) < 1e-9 then
+                level = level + 1
+                check.near(node.source, 1e4 * (node.rest[1] + 1), 1e-6)
+            else
+                upright = upright + 1
+                local nearest = math.huge
+                for _, source in ipairs(had) do
+                    nearest = math.min(nearest, math.abs(node.source - source))
+                end
+                check.near(nearest, 0, 0)
+            end
+        end
+    end
+    check.equal(level, 12)
+    check.equal(upright, 6)
+end

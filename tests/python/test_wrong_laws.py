@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Laws and dampings with one mistake each, which `talus check` refuses with a sentence that names it.
+"""Laws, dampings and elements with one mistake each, which `talus check` refuses with a sentence that names it.
 
     tests/python/test_wrong_laws.py BUILD_FOLDER
 
 Each is one that comes with Talus, or a template, with a change of one place of its text. What is told must be of the check that
-the table names, and have its word; those without a change, and the laws of tests/plugins, pass. Of the mistakes one in TALUS_TEST_SHARE
-is tried."""
+the table names, and have its word; those without a change, and those of tests/plugins and tests/elements, pass. Of the mistakes
+one in TALUS_TEST_SHARE is tried."""
 import concurrent.futures
 import os
 import pathlib
@@ -23,6 +23,7 @@ COHESIVE, WEAKENING, ROUGH = "laws/cohesive", "laws/slip_weakening", "laws/barto
 YIELDING, RATE, TEMPLATE = "laws/continuously_yielding", "laws/rate_state", "template/law"
 LOCAL, COMBINED, VISCOUS = "damping/local", "damping/combined", "damping/viscous"
 ADAPTIVE, KINETIC, DRAG = "damping/adaptive", "damping/kinetic", "template/damping"
+PADS = "../tests/elements"
 
 PLAIN = "batch->flags[i] = normal < 0 ? TL_POINT_OPEN : moved > 0 ? TL_POINT_SLIPPING : 0;"
 HEAT = "batch->dissipated[i] = fmax(0, moved * (along + f_s) / 2);"
@@ -194,6 +195,19 @@ WRONG = [
      "    state[1][0] += alpha;\n    *state[0] = clamp(alpha", "writes", "does not declare"),
     ("a damping that changes its states for each batch", KINETIC, ".update = tl_update_alpha_state,",
      ".update = tl_update_alpha_state, .begin = 0,", "states", "never written"),
+    # what elements do together
+    ("pads: the first one counts for all", PADS, "= sum / area;", "= own_pressure(self, b, 0);", "together", "opposite order"),
+    ("pads: each one has what those before it have", PADS, "= sum / area;", "= (sum -= own_pressure(self, b, e)) / area;",
+     "together", "opposite order"),
+    ("pads: pressure is added to what was there", PADS, "[SHARED][e] = sum / area;", "[SHARED][e] += sum / area;", "together",
+     "again at the same time"),
+    ("pads: a state that is not finite", PADS, "= sum / area;", "= sum / (area - area);", "finite", "together.* not finite"),
+    ("pads: another result at each call", PADS, "double sum = 0, area = 0;", "static double sum; double area = 0;", "repeats",
+     "together"),
+    ("pads: it fails", PADS, "sum / area;\n    return TL_OK;", "sum / area;\n    return TL_E_NUMERIC;", "runs",
+     "together.* failed"),
+    ("pads: a number of times counts", PADS, "[SHARED][e] = sum / area;",
+     "[SHARED][e] = b->element_state[SHARED][e] > 0 ? 0 : sum / area;", "together", "again at the same time"),
 ]
 
 faults = []
@@ -238,7 +252,7 @@ def main():
     build = pathlib.Path(sys.argv[1]).resolve()
     right = [path for kind in ("laws/*", "damping/*", "template/law", "template/damping")
              for path in sorted((ROOT / "plugins").glob(kind + "/*.c"))]
-    right += sorted((ROOT / "tests/plugins").glob("*.c"))
+    right += [path for kind in ("plugins", "elements") for path in sorted((ROOT / "tests" / kind).glob("*.c"))]
     with tempfile.TemporaryDirectory() as name, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(name)
         runs = [pool.submit(try_wrong, build, folder, *case) for case in enumerate(WRONG) if case[0] % SHARE == 0]

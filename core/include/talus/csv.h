@@ -1,7 +1,9 @@
 /* talus/csv.h - tables of numbers in text: a line of names, then rows, separated by commas, semicolons or tabs.
  *
- * Columns are found by their names, in letters of any case; those that are not asked for are passed over. Empty lines
- * and lines that begin with # are left out. Every fault is a sentence with its line and column. */
+ * Columns are found by their names, in letters of any case; those that are not asked for are passed over. Empty lines,
+ * lines of separators only and lines that begin with # are left out. A cell in quotes may hold separators. Where cells
+ * are not separated by commas, numbers may have decimal commas: all of a file, or none. Every fault is a sentence with
+ * its line and column. */
 #ifndef TALUS_CSV_H
 #define TALUS_CSV_H
 
@@ -34,6 +36,7 @@ typedef struct tl_csv {
     size_t rows, capacity;
     size_t line; /* from 1 */
     char separator;
+    char decimal;                  /* the decimal sign of the numbers so far, 0: there was none */
     size_t cells;                  /* of a line */
     size_t wanted[TL_CSV_COLUMNS]; /* of each cell the column, or `columns` */
     char why[TL_CSV_WHY];          /* a sentence after a fault */
@@ -44,15 +47,26 @@ static inline bool tl_csv_space(char letter)
     return letter == ' ' || letter == '\r' || letter == '\t';
 }
 
+/* What follows a text in quotes at `at`, in which a quote is doubled; `at` where there is none that ends in this line.
+ */
+static inline const char *tl_csv_quoted(const char *at)
+{
+    for (const char *end = at + 1; *at == '"' && *end && *end != '\n'; end++)
+        if (*end == '"' && *++end != '"')
+            return end;
+    return at;
+}
+
 /* The cell at `at` without spaces and quotes around it: its length in *length. Gives where the cell ends. */
 static inline const char *tl_csv_cell(const tl_csv *c, const char **at, size_t *length)
 {
-    const char *begin = *at, *end = begin;
+    const char *begin = *at;
+    while (tl_csv_space(*begin) && *begin != c->separator)
+        begin++;
+    const char *end = tl_csv_quoted(begin);
     while (*end && *end != '\n' && *end != c->separator)
         end++;
     const char *next = end;
-    while (begin < end && tl_csv_space(*begin))
-        begin++;
     while (end > begin && tl_csv_space(end[-1]))
         end--;
     if (end - begin >= 2 && *begin == '"' && end[-1] == '"') {
@@ -84,19 +98,41 @@ static inline char tl_csv_separator(const char *text)
     return text[ahead] && text[ahead] != '\n' ? text[ahead] : ',';
 }
 
-/* Up to 30 bytes of a cell, printable. */
-static inline void tl_csv_show(const char *cell, size_t length, char shown[32])
+/* A cell or a line, printable, and cut off to `room` bytes. */
+static inline void tl_csv_show(const char *cell, size_t length, char *shown, size_t room)
 {
     size_t i = 0;
-    for (; i < length && i < 30; i++)
+    while (length > 0 && tl_csv_space(cell[length - 1]))
+        length--;
+    for (; i < length && i + 1 < room; i++)
         shown[i] = cell[i] >= ' ' && cell[i] <= '~' ? cell[i] : '?';
     shown[i] = '\0';
+}
+
+/* Takes the decimal sign of a number, and makes a point of a comma. false after a fault: the file has both. */
+static inline bool tl_csv_decimal(tl_csv *c, char *text, const char *column, const char *shown)
+{
+    char *comma = c->separator == ',' ? NULL : strchr(text, ','), *point = strchr(text, '.');
+    if (!comma && !point)
+        return true;
+    const char sign = comma ? ',' : '.';
+    if ((c->decimal && c->decimal != sign) || (comma && point)) {
+        tl_text_print(c->why, sizeof c->why,
+                      "line %zu, column '%s': '%s': numbers are to have decimal points or decimal commas, not both",
+                      c->line, column, shown);
+        return false;
+    }
+    c->decimal = sign;
+    if (comma)
+        *comma = '.';
+    return true;
 }
 
 /* Reads the line of names at `text`; gives what follows, NULL after a fault. */
 static inline const char *tl_csv_names(tl_csv *c, const char *text)
 {
     bool seen[TL_CSV_COLUMNS] = {false};
+    const char *line = text;
     c->separator = tl_csv_separator(text);
     for (bool more = true; more;) {
         size_t length, i = 0;
@@ -117,9 +153,11 @@ static inline const char *tl_csv_names(tl_csv *c, const char *text)
     }
     for (size_t i = 0; i < c->columns; i++)
         if (!seen[i] && !c->column[i].optional) {
+            char shown[64];
+            tl_csv_show(line, (size_t)(text - line), shown, sizeof shown);
             tl_text_print(c->why, sizeof c->why,
-                          "line %zu does not name a column '%s': the first line is to name the columns", c->line,
-                          c->column[i].name);
+                          "line %zu does not name a column '%s', but has '%s': the first line is to name the columns",
+                          c->line, c->column[i].name, shown);
             return NULL;
         }
     return text;
@@ -129,16 +167,20 @@ static inline const char *tl_csv_names(tl_csv *c, const char *text)
 static inline bool tl_csv_number(tl_csv *c, const char *cell, size_t length, size_t i, double *value)
 {
     const tl_csv_column *column = &c->column[i];
-    char text[64], shown[32];
+    char text[64] = "", shown[32];
     const char *end = text;
-    tl_csv_show(cell, length, shown);
-    if (length > 0 && length < sizeof text) {
+    tl_csv_show(cell, length, shown, sizeof shown);
+    if (length < sizeof text) {
         memcpy(text, cell, length);
         text[length] = '\0';
+        if (!tl_csv_decimal(c, text, column->name, shown))
+            return false;
         *value = tl_number_read(text, &end);
     }
-    if (length == 0 || end == text || *end || !isfinite(*value)) {
-        tl_text_print(c->why, sizeof c->why, "line %zu, column '%s': '%s' is no number", c->line, column->name, shown);
+    if (end == text || *end || !isfinite(*value)) {
+        tl_text_print(c->why, sizeof c->why, "line %zu, column '%s': %s%s%s%s", c->line, column->name,
+                      length ? "'" : "the cell is empty", shown, length ? "' is no number" : "",
+                      strchr(text, ',') && c->separator == ',' ? ": decimal commas need semicolons between cells" : "");
         return false;
     }
     if (*value < column->min || *value > column->max || (column->above && *value <= column->min)) {
@@ -182,8 +224,8 @@ static inline const char *tl_csv_row(tl_csv *c, const char *text)
         text += more;
     }
     if (cells != c->cells) {
-        tl_text_print(c->why, sizeof c->why, "line %zu has %zu cells, the line of names has %zu", c->line, cells,
-                      c->cells);
+        tl_text_print(c->why, sizeof c->why, "line %zu has %zu cells, the line of names has %zu%s", c->line, cells,
+                      c->cells, c->separator == ',' ? " (decimal commas need semicolons between cells)" : "");
         return NULL;
     }
     c->rows++;
@@ -197,10 +239,12 @@ static inline bool tl_csv_read(tl_csv *c, const char *text)
     if (strncmp(text, "\xef\xbb\xbf", 3) == 0) /* UTF-8's mark */
         text += 3;
     for (c->line = 1; text && *text; c->line++) {
-        const char *at = text;
+        const char *at = text, *full;
         while (tl_csv_space(*at))
             at++;
-        if (*at == '#' || *at == '\n' || !*at)
+        for (full = at; tl_csv_space(*full) || (c->cells && *full == c->separator);)
+            full++;
+        if (*at == '#' || *full == '\n' || !*full)
             text = at + strcspn(at, "\n");
         else
             text = c->cells ? tl_csv_row(c, text) : tl_csv_names(c, text);

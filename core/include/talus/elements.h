@@ -76,6 +76,14 @@ TL_API tl_status tl_element_field(tl_model *model, tl_id element, size_t index, 
 TL_API tl_status tl_elements_values(tl_model *model, const tl_id *elements, size_t count, const char *name, double *out,
                                     size_t *width);
 
+/* Writes what elements between the walls of contacts tell: of contacts[i] to out[i] a state by its name. Elements count
+ * whose first node is on a face of one of its blocks and whose last one is on a face of the other. Of several it is the
+ * mean, weighted by what their nodes stand for; so it is of the nodes where the state is one of nodes. Elements whose
+ * state `unless`, of the whole, is not 0 are left out; NULL: none is. NaN where there is no element or no such state.
+ * TL_E_STALE for a contact that is no more. */
+TL_API tl_status tl_contacts_element_values(tl_model *model, const tl_contact_name *contacts, size_t count,
+                                            const char *name, const char *unless, double *out);
+
 /* Changes parameters of elements: those that are given, of each. Elements keep their states. TL_E_ARGUMENT for a
  * parameter by which they were placed. All or none. */
 TL_API tl_status tl_elements_set(tl_model *model, const tl_id *elements, size_t count, const tl_args *args);

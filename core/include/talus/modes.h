@@ -27,8 +27,10 @@ typedef struct tl_modes {
 #define TL_MODES_MOST 1000
 
 /* Finds the slowest `count` vibrations about the present place: fewer where the free bodies have fewer freedoms.
- * Contacts are as stiff as their laws at points that press; those that slip have no stiffness along the face. What
- * weight and load do by turning is not in it. Each free body has six freedoms, less those that are held.
+ * Contacts are as stiff as their laws at points that press; those that slip have no stiffness along the face. Elements
+ * resist as their forces change by small motions; what yields counts with the stiffness by which it unloads. Elements
+ * that stand for what lies outside, as quiet faces and water, are not counted: their forces change when all nodes move
+ * together. What weight and load do by turning is not in it. Each free body has six freedoms, less those held.
  *
  * TL_E_STATE: the model has made no step since its blocks were made, or is not at rest: an unbalanced force is above
  * 1e-3 of what its body bears. Also where nothing is free, some blocks are deformable, or the law of a contact is not

@@ -342,8 +342,9 @@ typedef struct tl_damping_ops {
     /* since minor 3; not 0: `begin` and `update` always return TL_OK, as a law's */
     uint32_t never_fails;
     /* [main] since minor 14; may be NULL. Damping of contacts in proportion to their stiffness: *beta, s, >= 0. The
-     * host adds the force beta k A du/dt, normal and along the face, at closed points that do not slip. The stable step
-     * is then shorter by sqrt(1 + l^2) - l, l = beta / step. What cannot pull gets no tension by it. */
+     * host adds the force beta k A du/dt, normal and along the face, at closed points that do not slip. Where
+     * contacts alone hold, the stable step is then shorter by sqrt(1 + l^2) - l, l = beta / step. What cannot pull gets
+     * no tension by it. */
     void (*contact)(const void *self, double *beta);
 } tl_damping_ops;
 
@@ -756,14 +757,15 @@ typedef struct tl_element_ops {
      * of an element have moved apart by 1e-3 of the size of their blocks. Its elements are then those that it makes. */
     uint32_t lays_again;
     /* not 0: forces depend on nothing but places, and turn with the blocks. The host may then keep the forces, and turn
-     * them itself, until a block has gone farther than 1e-6 of its size. It books their work meanwhile. `stored` and
-     * `lost` must be 0. With nodes in zones all are asked in every step. */
+     * them itself, until a block has gone farther than 1e-4 of its size. Every 64 steps it is 1e-6. It books their work
+     * meanwhile. `stored` and `lost` must be 0. With nodes in zones all are asked in every step. */
     uint32_t steady;
     /* [main] Since 1.15, may be NULL: what the elements of one call do together, such as water that flows from one to
      * the other. It changes states, by which `update` then finds the forces. Of the batch, which holds all elements of
      * the call, du, v, force, stored, lost and given are NULL. Called once they are placed, when they have been placed
      * again, and before `update` in steps of which the number is divisible by `every`. Elements that have got other
-     * parameters by tl_elements_set are calls of their own. */
+     * parameters by tl_elements_set are calls of their own. Elements that are placed again may come in another order:
+     * that must change nothing but rounding. Asked again at the same time and places it must change nothing. */
     tl_status (*together)(const void *self, const tl_element_batch *batch, tl_report *report);
     /* [main] Since 1.15, may be NULL: 1. Steps between two calls of `together`; 0: none in steps. */
     uint32_t (*every)(const void *self);

@@ -181,7 +181,8 @@ static inline tl_status tl_poles_read(const tl_host *host, const char *file, tl_
     size_t length;
     tl_status status = tl_file_bytes(host, file, TL_SITE_FILE, &text, &length);
     if (status == TL_OK && memchr(text, '\0', length))
-        status = host->fail(host, TL_E_ARGUMENT, "poles '%.200s': it holds a zero byte: it is no text", file);
+        status = host->fail(host, TL_E_ARGUMENT,
+                            "poles '%.200s': it holds a zero byte: it is no text; save it as UTF-8", file);
     if (status == TL_OK && !tl_csv_read(&table, text))
         status = host->fail(host, TL_E_ARGUMENT, "poles '%.200s': %s", file, table.why);
     if (status == TL_OK) {

@@ -8,7 +8,8 @@
  *     alpha = 2 ratio w1 w2 / (w1 + w2),    beta = 2 ratio / (w1 + w2)
  *
  * The host integrates alpha as of "viscous" and adds beta K v at contacts. Source: Rayleigh, Theory of Sound (1877).
- * The stable step is shorter by (1 + l^2)^(1/2) - l, l = beta w / 2 of the fastest motion (Belytschko 1983). */
+ * Of contacts alone the stable step is shorter by (1 + l^2)^(1/2) - l, l = beta w / 2 of the fastest motion
+ * (Belytschko 1983). What beta leaves alone shortens it no more than without damping. */
 #include <talus/kit.h>
 #include <talus/version.h>
 

@@ -150,6 +150,7 @@ static void put_grout(chain *c, uint32_t k, const params *p, const steel *s, dou
     c->hold[k] = p->grout_stiffness * length;
     c->bond[k] = s->bond * length;
     c->residual[k] = s->residual * length;
+    c->bears[k] = c->worn[k] ? c->residual[k] : c->bond[k];
 }
 
 /* Steel of the length h from node k on, whose strain counts over `gauge`. */
@@ -333,7 +334,7 @@ static tl_status place(const tl_element_host *host, const void *given)
 typedef struct crossing {
     uint32_t segment;
     uint32_t begin, end;              /* first node of the way before, last node of that after */
-    tl_vec3 axis, along, slid;        /* unit vectors of bolt and tension, and d */
+    tl_vec3 axis, slid;               /* unit vector of the bolt, and d */
     tl_vec3 side[2];                  /* unit vectors of the ways; 0: one node only */
     double side_length[2], sum, part; /* m; size of the sum of the sides; g.a */
     double turn;                      /* active length over that of the straight piece now */
@@ -344,8 +345,8 @@ typedef struct crossing {
 typedef struct bolt {
     chain c;
     uint32_t row[CHAIN_ROOM];
-    double h[CHAIN_ROOM]; /* of segments, when installed */
-    tl_vec3 along[CHAIN_ROOM];
+    double h[CHAIN_ROOM];                 /* of segments, when installed */
+    double along[3][CHAIN_ROOM];          /* unit vector of the tension */
     crossing cross[TL_ELEMENT_NODES / 2]; /* each has nodes of its own on either side */
     uint32_t crossings;
 } bolt;
@@ -355,6 +356,11 @@ static tl_vec3 column(const double *const of[3], uint32_t i)
     return tl_v3(of[0][i], of[1][i], of[2][i]);
 }
 
+static tl_vec3 column_of(const double (*of)[CHAIN_ROOM], uint32_t k)
+{
+    return tl_v3(of[0][k], of[1][k], of[2][k]);
+}
+
 static tl_vec3 way_of(const tl_element_batch *b, uint32_t i, uint32_t j)
 {
     return tl_v3(b->rest[0][j] - b->rest[0][i] + (b->u[0][j] - b->u[0][i]),
@@ -362,18 +368,29 @@ static tl_vec3 way_of(const tl_element_batch *b, uint32_t i, uint32_t j)
                  b->rest[2][j] - b->rest[2][i] + (b->u[2][j] - b->u[2][i]));
 }
 
-/* Elongation of a way within a body; fills h and along. L^2 - h^2 = d . (2 r + d) keeps the digits of a small d. */
-static double stretch(bolt *t, uint32_t k, const tl_element_batch *b)
+/* Places and displacements of the nodes that are left, and how much longer the ways between them have become, m. */
+typedef struct ways {
+    double rest[3][CHAIN_ROOM], u[3][CHAIN_ROOM], longer[CHAIN_ROOM];
+} ways;
+
+/* Elongations of ways within a body; fills h and along. L^2 - h^2 = d . (2 r + d) keeps the digits of a small d. */
+TL_VECTORIZED static void stretch(bolt *t, ways *w)
 {
-    const uint32_t i = t->row[k], j = t->row[k + 1];
-    const tl_vec3 rest = tl_v3_sub(column(b->rest, j), column(b->rest, i));
-    const tl_vec3 moved = tl_v3(b->u[0][j] - b->u[0][i], b->u[1][j] - b->u[1][i], b->u[2][j] - b->u[2][i]);
-    const tl_vec3 now = tl_v3_add(rest, moved);
-    const double h = tl_v3_norm(rest), length = tl_v3_norm(now);
-    t->h[k] = h;
-    t->along[k] = length > 0 ? tl_v3_scale(1 / length, now) : tl_v3(0, 0, 0);
-    const double longer = tl_v3_dot(moved, tl_v3_add(tl_v3_add(rest, rest), moved)) / (length + h);
-    return fabs(longer) > NOISE * tl_v3_norm(moved) ? longer : 0;
+    const uint32_t last = t->c.count - 1;
+#pragma omp simd
+    for (uint32_t k = 0; k < last; k++) {
+        const tl_vec3 rest = {w->rest[0][k + 1] - w->rest[0][k], w->rest[1][k + 1] - w->rest[1][k],
+                              w->rest[2][k + 1] - w->rest[2][k]};
+        const tl_vec3 moved = {w->u[0][k + 1] - w->u[0][k], w->u[1][k + 1] - w->u[1][k], w->u[2][k + 1] - w->u[2][k]};
+        const tl_vec3 now = tl_v3_add(rest, moved);
+        const double h = tl_v3_norm(rest), length = tl_v3_norm(now), per = length > 0 ? 1 / length : 0;
+        const double longer = tl_v3_dot(moved, tl_v3_add(tl_v3_add(rest, rest), moved)) / (length + h);
+        t->h[k] = h;
+        t->along[0][k] = per * now.x;
+        t->along[1][k] = per * now.y;
+        t->along[2][k] = per * now.z;
+        w->longer[k] = fabs(longer) > NOISE * tl_v3_norm(moved) ? longer : 0;
+    }
 }
 
 /* Elongation at a crossing, whose ends are known. */
@@ -396,8 +413,10 @@ static double part_sides(bolt *t, crossing *x, const tl_element_batch *b, double
     const tl_vec3 straight = tl_v3_madd(x->slid, l + opened, x->axis);
     const double length = tl_v3_norm(straight);
     x->turn = length > 0 ? active / length : 0;
-    x->along = length > 0 ? tl_v3_scale(1 / length, straight) : x->axis;
-    t->along[k] = x->along;
+    const tl_vec3 along = length > 0 ? tl_v3_scale(1 / length, straight) : x->axis;
+    t->along[0][k] = along.x;
+    t->along[1][k] = along.y;
+    t->along[2][k] = along.z;
     return (opened * (2 * l + opened) + x->size * x->size) / (length + l);
 }
 
@@ -449,10 +468,17 @@ static void follow_rock(bolt *t, const params *p, const steel *s, const tl_eleme
 {
     chain *c = &t->c;
     uint32_t next = 0;
+    ways w;
+    for (int d = 0; d < 3; d++)
+        for (uint32_t k = 0; k < c->count; k++) {
+            w.rest[d][k] = b->rest[d][t->row[k]];
+            w.u[d][k] = b->u[d][t->row[k]];
+        }
+    stretch(t, &w);
     c->rock[0] = b->state[ROCK][t->row[0]];
     for (uint32_t k = 0; k + 1 < c->count; k++) {
         const bool crosses = next < t->crossings && t->cross[next].segment == k;
-        c->rock[k + 1] = c->rock[k] + (crosses ? part_sides(t, &t->cross[next], b, s->active) : stretch(t, k, b));
+        c->rock[k + 1] = c->rock[k] + (crosses ? part_sides(t, &t->cross[next], b, s->active) : w.longer[k]);
         next += crosses;
     }
     next = 0;
@@ -610,8 +636,9 @@ static void put_forces(const bolt *t, const tl_element_batch *b, uint32_t e)
     uint32_t next = 0;
     for (uint32_t k = 0; k + 1 < c->count; k++) {
         tension += c->grout[k];
-        push(b, t->row[k], tension, t->along[k]);
-        push(b, t->row[k + 1], -tension, t->along[k]);
+        const tl_vec3 along = column_of(t->along, k);
+        push(b, t->row[k], tension, along);
+        push(b, t->row[k + 1], -tension, along);
         if (next == t->crossings || t->cross[next].segment != k)
             continue;
         const crossing *x = &t->cross[next++];

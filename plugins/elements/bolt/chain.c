@@ -19,15 +19,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Cost only: Newton passes before w is found directly, and after that, against rounding. */
+/* Limit: Newton passes before w is found directly, and after that, against rounding. Test: lua/test_bolts_at_random. */
 #define PASSES 6
-/* Limit: parts of one pass that are tried; the part that is reached is good enough. */
+/* Limit: parts of one pass that are tried; the part that is reached is good enough. Test: lua/test_bolts_at_random. */
 #define SEARCH 12
-/* Constant: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. */
+/* Tolerance: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. Test:
+ * lua/test_bolts_at_random. */
 #define OVERSHOT 0.5
 /* Tolerance: relative to the largest force of the bolt, the unbalance with which the passes end. */
 #define BALANCED 1e-11
-/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. */
+/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. Test: lua/test_bolt. */
 #define ROUNDED 1e-15
 /* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
  * gives the same forces. */
@@ -38,22 +39,35 @@ static inline double within(double x, double limit)
     return larger(-limit, smaller(limit, x));
 }
 
+/* Forces of the grout at the present w, and of the steel. `more`, N, is added to the bond; steel that bears more than
+ * `least` bears all. */
+TL_VECTORIZED static void respond_all(chain *c, double more, double least)
+{
+    const uint32_t n = c->count;
+#pragma omp simd
+    for (uint32_t k = 0; k < n; k++) {
+        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
+        const double force = within(trial, c->bears[k] + more);
+        const double left = LEFT * smaller(c->hold[k], c->even[k]);
+        c->grout_trial[k] = trial;
+        c->grout[k] = force;
+        c->grout_tangent[k] = force == trial ? c->hold[k] : left;
+    }
+#pragma omp simd
+    for (uint32_t k = 0; k < n - 1; k++) {
+        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
+        const double force = within(trial, c->limit[k] > least ? INFINITY : c->limit[k]);
+        const double left = LEFT * c->even[k];
+        c->tension_trial[k] = trial;
+        c->tension[k] = force;
+        c->tension_tangent[k] = force == trial ? c->stiff[k] : left;
+    }
+}
+
 /* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
 static void respond(chain *c, bool elastic)
 {
-    const uint32_t n = c->count;
-    for (uint32_t k = 0; k < n; k++) {
-        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
-        c->grout_trial[k] = trial;
-        c->grout[k] = elastic ? trial : within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
-        c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * smaller(c->hold[k], c->even[k]);
-    }
-    for (uint32_t k = 0; k + 1 < n; k++) {
-        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
-        c->tension_trial[k] = trial;
-        c->tension[k] = elastic && c->limit[k] > 0 ? trial : within(trial, c->limit[k]);
-        c->tension_tangent[k] = c->tension[k] == trial ? c->stiff[k] : LEFT * c->even[k];
-    }
+    respond_all(c, elastic ? INFINITY : 0, elastic ? 0 : INFINITY);
     c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
     c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
     c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * smaller(c->plate_stiff, c->even[0]);
@@ -66,28 +80,55 @@ static bool wear(chain *c)
     for (uint32_t k = 0; k < c->count; k++)
         if (!c->worn[k] && fabs(c->grout_trial[k]) > c->bond[k]) {
             c->worn[k] = true;
+            c->bears[k] = c->residual[k];
             c->grout[k] = within(c->grout_trial[k], c->residual[k]);
             wears = wears || c->residual[k] < c->bond[k];
         }
     return wears;
 }
 
+/* Largest sizes along a chain: of the unbalance, forces (N), stiffnesses (N/m) and displacements (m). */
+typedef struct sizes {
+    double off, force, stiff, moved;
+} sizes;
+
+static inline double size(double x)
+{
+    return x < 0 ? -x : x;
+}
+
+/* Fills `off` but for the plate and the pull at node 0. */
+TL_VECTORIZED static sizes balance(chain *c)
+{
+    const uint32_t last = c->count - 1;
+    double off = 0, force = 0, stiff = 0, moved = 0;
+    c->off[0] = (last > 0 ? c->tension[0] : 0) + (-c->plate - c->pull) - c->grout[0];
+#pragma omp simd reduction(max : force, stiff)
+    for (uint32_t k = 0; k < last; k++) {
+        force = larger(force, size(c->tension[k]));
+        stiff = larger(stiff, c->stiff[k]);
+    }
+#pragma omp simd
+    for (uint32_t k = 1; k < last; k++)
+        c->off[k] = c->tension[k] - c->tension[k - 1] - c->grout[k];
+    if (last > 0)
+        c->off[last] = -c->tension[last - 1] - c->grout[last];
+#pragma omp simd reduction(max : off, force, stiff, moved)
+    for (uint32_t k = 0; k <= last; k++) {
+        off = larger(off, size(c->off[k]));
+        force = larger(force, size(c->grout[k]));
+        stiff = larger(stiff, c->hold[k]);
+        moved = larger(moved, larger(larger(size(c->w[k]), size(c->rock[k])), size(c->slip[k])));
+    }
+    return (sizes){off, force, stiff, moved};
+}
+
 /* Whether the steel is in equilibrium; fills `off`. */
 static bool is_balanced(chain *c)
 {
-    double most = fabs(c->pull) + c->plate, off = 0, before = -c->plate - c->pull;
-    double stiffest = c->plate_stiff, moved = fabs(c->seat);
-    for (uint32_t k = 0; k < c->count; k++) {
-        const double after = k + 1 < c->count ? c->tension[k] : 0;
-        c->off[k] = after + before - c->grout[k];
-        before = -after;
-        off = larger(off, fabs(c->off[k]));
-        most = larger(most, larger(fabs(after), fabs(c->grout[k])));
-        stiffest = larger(stiffest, larger(c->hold[k], k + 1 < c->count ? c->stiff[k] : 0));
-        moved = larger(moved, larger(fabs(c->w[k]), fabs(c->rock[k])));
-        moved = larger(moved, fabs(c->slip[k]));
-    }
-    return off <= BALANCED * most + ROUNDED * stiffest * moved;
+    const sizes of = balance(c);
+    const double most = larger(fabs(c->pull) + c->plate, of.force), stiffest = larger(c->plate_stiff, of.stiff);
+    return of.off <= BALANCED * most + ROUNDED * stiffest * larger(fabs(c->seat), of.moved);
 }
 
 /* What is left of the nodes on one side of a node when they are eliminated. */
@@ -132,27 +173,34 @@ static void find_step(const chain *c, double *step)
         step[k] += over[k] * step[k - 1];
 }
 
-/* Goes a part of a step on from `from`. Gives the unbalance along the step, J, which falls to 0 at the best part. */
-static double go(chain *c, const double *from, const double *step, double part, bool *balanced)
+/* The unbalance along a step, J: it falls to 0 at the best part of it. */
+static double along(const chain *c, const double *step)
 {
     double sum = 0;
-    for (uint32_t k = 0; k < c->count; k++)
-        c->w[k] = from[k] + part * step[k];
-    respond(c, false);
-    *balanced = is_balanced(c);
     for (uint32_t k = 0; k < c->count; k++)
         sum += c->off[k] * step[k];
     return sum;
 }
 
-/* A Newton pass. Where it goes too far, beyond where the energy along the step is least, it goes back. */
+/* Goes a part of a step on from `from`. Gives the unbalance along the step. */
+static double go(chain *c, const double *from, const double *step, double part, bool *balanced)
+{
+    for (uint32_t k = 0; k < c->count; k++)
+        c->w[k] = from[k] + part * step[k];
+    respond(c, false);
+    *balanced = is_balanced(c);
+    return along(c, step);
+}
+
+/* A Newton pass from where forces and unbalance are known. Where it goes too far, beyond where the energy along the
+ * step is least, it goes back. */
 static bool advance(chain *c)
 {
     double step[TL_ELEMENT_NODES], from[TL_ELEMENT_NODES], least = 0, most = 1;
     bool balanced;
     find_step(c, step);
     memcpy(from, c->w, c->count * sizeof *from);
-    const double begin = go(c, from, step, 0, &balanced);
+    const double begin = along(c, step);
     double low = begin, high = go(c, from, step, 1, &balanced);
     for (int k = 0; k < SEARCH && high < -OVERSHOT * begin && !balanced; k++) {
         const double part = k % 3 == 2 ? 0.5 * (least + most) : least + (most - least) * low / (low - high);
@@ -257,8 +305,7 @@ static bool cut_off(curve *f, double limit, double *low, double *high)
 
 static holder grout_of(const chain *c, uint32_t k)
 {
-    const double limit = c->worn[k] ? c->residual[k] : c->bond[k];
-    return (holder){c->rock[k] + c->slip[k], c->hold[k], -limit, limit};
+    return (holder){c->rock[k] + c->slip[k], c->hold[k], -c->bears[k], c->bears[k]};
 }
 
 /* Finds w with the limits as they are. */

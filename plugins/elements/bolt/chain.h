@@ -15,6 +15,7 @@ typedef struct chain {
     double w[CHAIN_ROOM], rock[CHAIN_ROOM], slip[CHAIN_ROOM]; /* m */
     double hold[CHAIN_ROOM];                                  /* N/m, of the grout */
     double bond[CHAIN_ROOM], residual[CHAIN_ROOM];            /* N */
+    double bears[CHAIN_ROOM];                                 /* N, the one of them that counts */
     bool worn[CHAIN_ROOM];
     double stiff[CHAIN_ROOM], even[CHAIN_ROOM]; /* N/m, of segments: E A / h and E A / gauge */
     double plastic[CHAIN_ROOM], limit[CHAIN_ROOM];

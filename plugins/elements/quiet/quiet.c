@@ -96,31 +96,77 @@ static half_space cut_off(const quiet_params *p, double height, double density, 
     return half_space_rock(p->kn, p->ks, p->p_velocity, p->s_velocity, height, density, dt);
 }
 
-/* What the nodes of an element do in a step, J: `work` is that of the blocks on them. */
-typedef struct sums {
-    double stored, lost, work, area;
-} sums;
+/* Cost only: nodes that act together, of elements with the same rock behind them. */
+#define TILE 96
 
-/* Moves the dashpot of node i along, and puts the force on the block. */
-static inline void act(const half_space *h, const tl_element_batch *b, uint32_t i, tl_vec3 n, tl_vec3 in, sums *sum)
+/* Normals of the nodes of a tile, and what they do in a step, J: `work` is that of the blocks on them. */
+typedef struct tile {
+    double normal[3][TILE], stored[TILE], lost[TILE], work[3][TILE];
+} tile;
+
+/* Moves the dashpots of nodes [first, first + count) along, and puts the forces on the block. */
+TL_VECTORIZED static void act(const half_space *behind, const tl_element_batch *b, uint32_t first, uint32_t count,
+                              tl_vec3 in, tile *t)
 {
-    const double area = b->weight[i];
-    const tl_vec3 u = {b->u[0][i], b->u[1][i], b->u[2][i]}, du = {b->du[0][i], b->du[1][i], b->du[2][i]};
-    const tl_vec3 s = {b->state[QUIET_SHIFT_X][i], b->state[QUIET_SHIFT_Y][i], b->state[QUIET_SHIFT_Z][i]};
-    const tl_vec3 now = half_space_follow(h, s, u, du, in, n);
-    const tl_vec3 d = tl_v3_sub(u, now), out = tl_v3_sub(tl_v3_sub(now, s), in);
-    const tl_vec3 f = tl_v3_scale(area, half_space_parts(h->k, d, n));
-    sum->stored += 0.5 * area * half_space_square(h->k, d, n);
-    sum->lost += area * half_space_square(h->z, out, n);
-    sum->area += area;
-    double force[] = {-f.x, -f.y, -f.z};
+    const half_space h = *behind;
+    const double *restrict area = b->weight + first;
+    const double *restrict u[3] = {b->u[0] + first, b->u[1] + first, b->u[2] + first};
+    const double *restrict du[3] = {b->du[0] + first, b->du[1] + first, b->du[2] + first};
+    double *restrict shift[3], *restrict force[3];
     for (int k = 0; k < 3; k++) {
-        sum->work -= 0.5 * (b->force[k][i] + force[k]) * b->du[k][i];
-        b->force[k][i] = force[k];
+        shift[k] = b->state[QUIET_SHIFT_X + k] + first;
+        force[k] = b->force[k] + first;
     }
-    b->state[QUIET_SHIFT_X][i] = now.x;
-    b->state[QUIET_SHIFT_Y][i] = now.y;
-    b->state[QUIET_SHIFT_Z][i] = now.z;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const tl_vec3 n = {t->normal[0][i], t->normal[1][i], t->normal[2][i]}, at = {u[0][i], u[1][i], u[2][i]};
+        const tl_vec3 way = {du[0][i], du[1][i], du[2][i]}, s = {shift[0][i], shift[1][i], shift[2][i]};
+        const tl_vec3 now = half_space_follow(&h, s, at, way, in, n);
+        const tl_vec3 d = tl_v3_sub(at, now), out = tl_v3_sub(tl_v3_sub(now, s), in);
+        const tl_vec3 f = tl_v3_scale(area[i], half_space_parts(h.k, d, n));
+        t->stored[i] = 0.5 * area[i] * half_space_square(h.k, d, n);
+        t->lost[i] = area[i] * half_space_square(h.z, out, n);
+        t->work[0][i] = 0.5 * (force[0][i] + -f.x) * way.x;
+        t->work[1][i] = 0.5 * (force[1][i] + -f.y) * way.y;
+        t->work[2][i] = 0.5 * (force[2][i] + -f.z) * way.z;
+        force[0][i] = -f.x;
+        force[1][i] = -f.y;
+        force[2][i] = -f.z;
+        shift[0][i] = now.x;
+        shift[1][i] = now.y;
+        shift[2][i] = now.z;
+    }
+}
+
+/* Puts what the nodes of element e, from lane `first` of the tile on, do in a step into its books. */
+static void book(const half_space *h, const tl_element_batch *b, uint32_t e, tl_vec3 in, const tile *t, uint32_t first)
+{
+    const double per = b->dt > 0 ? 1 / b->dt : 0;
+    const tl_vec3 n = {t->normal[0][first], t->normal[1][first], t->normal[2][first]};
+    double stored = 0, lost = 0, work = 0, area = 0;
+    bool gone = false; /* a part of the block, and with it what the springs there hold */
+    for (uint32_t k = b->start[e], i = first; k < b->start[e + 1]; k++, i++) {
+        gone = gone || b->weight[k] == 0;
+        stored += t->stored[i];
+        lost += t->lost[i];
+        area += b->weight[k];
+        for (int c = 0; c < 3; c++)
+            work -= t->work[c][i];
+    }
+    b->given[e] = per * area * half_space_square(h->z, in, n);
+    b->lost[e] = gone ? b->stored[e] + work + b->given[e] - stored : per * lost;
+    b->stored[e] = stored;
+}
+
+/* The element behind those from e on that act together: with the same rock behind them, as most faces of a side. */
+static uint32_t alike_until(const tl_element_batch *b, uint32_t e)
+{
+    const double *height = b->element_state[QUIET_HEIGHT], *density = b->element_state[QUIET_DENSITY];
+    uint32_t end = e + 1;
+    while (end < b->count && height[end] == height[e] && density[end] == density[e] &&
+           b->start[end + 1] - b->start[e] <= TILE)
+        end++;
+    return end;
 }
 
 static tl_status update(const void *self, const tl_element_batch *b, tl_report *report)
@@ -128,26 +174,19 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     (void)report;
     const face_kind *kind = self;
     const tl_vec3 in = half_space_came(kind->wave, b->time, b->dt);
-    const double per = b->dt > 0 ? 1 / b->dt : 0;
     double *const *of = b->element_state;
-    half_space h = {.k = {0, 0}};
-    double height = NAN, density = NAN; /* of h: most faces of a side have the same */
-    for (uint32_t e = 0; e < b->count; e++) {
-        if (!(of[QUIET_HEIGHT][e] == height && of[QUIET_DENSITY][e] == density)) {
-            height = of[QUIET_HEIGHT][e];
-            density = of[QUIET_DENSITY][e];
-            h = cut_off(&kind->given, height, density, b->dt);
-        }
-        const tl_vec3 n = {of[QUIET_NORMAL_X][e], of[QUIET_NORMAL_Y][e], of[QUIET_NORMAL_Z][e]};
-        sums sum = {0, 0, 0, 0};
-        bool gone = false; /* a part of the block, and with it what the springs there hold */
-        for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++) {
-            gone = gone || b->weight[i] == 0;
-            act(&h, b, i, n, in, &sum);
-        }
-        b->given[e] = per * sum.area * half_space_square(h.z, in, n);
-        b->lost[e] = gone ? b->stored[e] + sum.work + b->given[e] - sum.stored : per * sum.lost;
-        b->stored[e] = sum.stored;
+    tile t;
+    for (uint32_t begin = 0, end; begin < b->count; begin = end) {
+        end = alike_until(b, begin);
+        const uint32_t first = b->start[begin];
+        const half_space h = cut_off(&kind->given, of[QUIET_HEIGHT][begin], of[QUIET_DENSITY][begin], b->dt);
+        for (uint32_t e = begin; e < end; e++)
+            for (uint32_t i = b->start[e] - first; i < b->start[e + 1] - first; i++)
+                for (int k = 0; k < 3; k++)
+                    t.normal[k][i] = of[QUIET_NORMAL_X + k][e];
+        act(&h, b, first, b->start[end] - first, in, &t);
+        for (uint32_t e = begin; e < end; e++)
+            book(&h, b, e, in, &t, b->start[e] - first);
     }
     return TL_OK;
 }

@@ -6,9 +6,10 @@
  * Sides are compared within the cells of a grid, so the time grows as their number. */
 #include "crossings.h"
 
-/* Tolerance: cosine of the angle between sides that run alongside each other. */
+/* Tolerance: cosine of the angle between sides that run alongside each other. Test: unit/test_crossings. */
 #define ALONGSIDE 0.9
-/* Constant: ends of sides that are nearer than this share of the shortest side are one end, however wide the slack. */
+/* Tolerance: ends of sides that are nearer than this share of the shortest side are one end, however wide the slack.
+ * Test: unit/test_crossings. */
 #define LEAST_PIECE 0.25
 
 /* Cost only: width of a cell of the grid over the mean length of sides; and how far cells are off whole numbers. Sides

@@ -45,10 +45,12 @@ const tl_param flow_param_table[FLOW_PARAMS] = {
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_PLACE),
     TL_PARAM(TL_PARAM_POINTS, flow_params, drains, "m", "Three points a drain: both ends, and {radius, 0, 0}.",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_PLACE),
-    TL_PARAM(TL_PARAM_INT, flow_params, every, "", "Steps between two solutions of steady flow.", .def = {100},
-             .min = 1, .max = 1e9, .flags = TL_PARAM_PLACE),
-    TL_PARAM(TL_PARAM_BOOL, flow_params, steady, "", "Whether water is in balance, or also stored, with every = 1.",
-             .def = {1}, .flags = TL_PARAM_PLACE)};
+    TL_PARAM(TL_PARAM_INT, flow_params, every, "",
+             "Steps between two solutions; 0: 100 of steady flow, 1 of stored water. With n of stored water the time "
+             "step is n times shorter where walls move.",
+             .def = {0}, .max = 1e9, .flags = TL_PARAM_PLACE),
+    TL_PARAM(TL_PARAM_BOOL, flow_params, steady, "", "Whether water is in balance, or also stored.", .def = {1},
+             .flags = TL_PARAM_PLACE)};
 
 const tl_state flow_state_table[FLOW_STATES] = {
     [0] = TL_STATE(TL_STATE_SCALAR, "pressure", "Pa", "at the node"),
@@ -60,10 +62,12 @@ const tl_state flow_state_table[FLOW_STATES] = {
     TL_STATE(TL_STATE_WHOLE, "opening", "m", "mean distance of the walls"),
     TL_STATE(TL_STATE_WHOLE, "dry", "", "1: it has run dry"),
     TL_STATE(TL_STATE_WHOLE, "aperture", "m", "hydraulic aperture"),
-    TL_STATE(TL_STATE_WHOLE, "flow", "m3/s", "through the joint; of a head or drain: into the rock"),
+    TL_STATE(TL_STATE_WHOLE, "flow", "m3/s",
+             "through the joint; of a head or drain: into the rock; of stored water the mean since the last solution"),
     TL_STATE(TL_STATE_WHOLE, "head", "m", "mean head"),
     TL_STATE(TL_STATE_WHOLE, "role", "", "0: a wet joint, 1: a head, 2: a drain", .transfer = TL_TRANSFER_RESET),
-    TL_STATE(TL_STATE_WHOLE, "closed", "", "1: its network reaches neither a head nor a drain"),
+    TL_STATE(TL_STATE_WHOLE, "closed", "",
+             "1: its network reaches neither a head nor a drain; of a head or drain: it reaches no joint"),
     TL_STATE(TL_STATE_WHOLE, "time", "s", "of its pressures; -1: it has none yet")};
 
 /* ---------------------------------------------------------------- geometry --------------- */
@@ -477,6 +481,11 @@ static tl_status place_all(placing *k, const tl_element_wall *walls, size_t coun
         status = host->fail(host, TL_E_MEMORY, "out of memory");
     if (status == TL_OK && !host->again)
         status = check_reach(k, walls);
+    if (status == TL_OK && !host->again && !k->p->steady && k->p->every > 1)
+        host->log(host,
+                  "every = %lld: between its solutions stored water does not feel walls that move, so the time step is "
+                  "%lld times shorter: leave every out unless the walls are held",
+                  (long long)k->p->every, (long long)k->p->every);
     if (status == TL_OK)
         status = place_ends(k, &k->p->heads, FLOW_AT_HEAD);
     if (status == TL_OK)
@@ -527,19 +536,21 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     return TL_OK;
 }
 
-/* Water that is stored resists the walls: they press it together. Its layer is at least as thick as the residual. */
-static void stiffness(const void *self, const tl_element_batch *b, double *k, double *c)
-{
-    const flow_params *p = self;
-    (void)c;
-    for (uint32_t i = 0; !p->steady && i < b->start[b->count]; i++)
-        k[i] = p->bulk * b->weight[i] / p->residual;
-}
-
 static uint32_t every(const void *self)
 {
     const flow_params *p = self;
-    return p->steady ? (uint32_t)p->every : 1;
+    return p->every > 0 ? (uint32_t)p->every : p->steady ? 100 : 1;
+}
+
+/* Water that is stored resists the walls: they press it together. Its layer is at least as thick as the residual. When
+ * it is asked every n steps, these steps together must be as short as one. */
+static void stiffness(const void *self, const tl_element_batch *b, double *k, double *c)
+{
+    const flow_params *p = self;
+    const double steps = every(self);
+    (void)c;
+    for (uint32_t i = 0; !p->steady && i < b->start[b->count]; i++)
+        k[i] = steps * steps * p->bulk * b->weight[i] / p->residual;
 }
 
 const tl_element_ops flow_ops = {.size = sizeof flow_ops,

@@ -19,19 +19,34 @@
  *
  *     w A / K d(phi)/dt + A dw/dt + sum of q = 0
  *
- * by one implicit step for the time since the last call; a pressure below 0 becomes 0.
+ * for the time since the last call, with the apertures of now and dw/dt the same all the while. That time has parts of
+ * h. Of each an implicit step gives phi(h), and two of h/2 give phi(h/2, h/2). Both are stable for any h, and
+ *
+ *     2 phi(h/2, h/2) - phi(h)
+ *
+ * is of second order (Richardson 1911). Where the two differ too much the part is halved. After each part a pressure
+ * below 0 becomes 0. Flows are those of the mean potential, phi(h/2) + phi(h/2, h/2) - phi(h) of each part by its
+ * length: so what flows in is what is stored.
  *
  * The equations are solved by conjugate gradients with the diagonal as preconditioner, one after the other, so the
  * bits do not depend on threads. Unsaturated joints are not followed: one above the water conducts as if it were full,
  * and bears no pressure. */
 #include "flow.h"
 
-/* Tolerance: residual of the equations over that of the heads, where iterations end. Test: lua/test_flow. */
-#define CONVERGED 1e-10
+/* Tolerance: residual of the equations over that of the heads, where iterations end. What is left over is water that is
+ * lost, and apertures that differ a hundredfold make it a millionfold larger. Test: lua/test_flow. */
+#define CONVERGED 1e-13
 /* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
 #define MOST_ITERATIONS 20
 
-/* Limit: ratio of the radii of a drain, of which `place` refuses smaller ones: joints that are cut become smaller. */
+/* Tolerance: largest difference of the potentials by one implicit step and by two of half of it, over the largest
+ * difference of potentials that there is. Test: lua/test_stored_flow. */
+#define STEP_ERROR 1e-4
+/* Limit: the time since the last call over its shortest part. */
+#define MOST_PARTS 1048576.0
+
+/* Tolerance: least ratio of the radii of a drain. `place` refuses smaller ones, but joints that are cut become smaller.
+ * Test: lua/test_flow. */
 #define LEAST_RATIO 1.05
 
 /* A drain in a cell. */
@@ -52,12 +67,19 @@ typedef struct net {
     double *sum, *phi;        /* of a crossing: of t; its potential in the last product */
     double *x, *r, *way, *y;  /* of a cell: potential, Pa; residual, direction and product */
     double *extra, *diagonal; /* of a cell: of drains and storage; of the matrix */
+    double *leak, *linked;    /* of a cell: of drains; of the matrix without storage */
+    double *source, *store;   /* of a cell: right side without storage, m3/s; w A / K, m3/Pa */
+    double *mean;             /* of a cell: potential by which it has flowed since the last call, Pa */
+    double *from, *one, *two; /* of a cell: before a part, after one step, and after half of two, Pa */
     double *width;            /* of a cell, m: aperture */
     unsigned char *closed, *open, *drained;
     hit *drain;
     size_t hits, hit_capacity;
+    uint32_t *head_row, *drain_row; /* of the elements that are heads and drains: they may be anywhere */
+    size_t head_count, drain_count;
     double base; /* Pa: potentials count from it */
     double step; /* s; 0: none */
+    bool flows;  /* flows are found: time has passed, or some have none yet */
 } net;
 
 /* ---------------------------------------------------------------- geometry --------------- */
@@ -176,8 +198,17 @@ static bool make_room(net *n)
         return false;
     n->first[n->cells] = (uint32_t)n->sides;
     n->crossings = (size_t)(top + 1);
-    double **const of_cells[] = {&n->x, &n->r, &n->way, &n->y, &n->extra, &n->diagonal, &n->width};
-    bool enough = true;
+    double **const of_cells[] = {&n->x,        &n->r,    &n->way,    &n->y,      &n->extra,
+                                 &n->diagonal, &n->leak, &n->linked, &n->source, &n->store,
+                                 &n->mean,     &n->from, &n->one,    &n->two,    &n->width};
+    n->head_row = malloc((n->cells + 1) * sizeof *n->head_row);
+    n->drain_row = malloc((n->cells + 1) * sizeof *n->drain_row);
+    bool enough = n->head_row && n->drain_row;
+    for (size_t k = 0; k < n->cells && enough; k++)
+        if (role_of(n, k) == FLOW_AT_HEAD)
+            n->head_row[n->head_count++] = (uint32_t)k;
+        else if (role_of(n, k) == FLOW_AT_DRAIN)
+            n->drain_row[n->drain_count++] = (uint32_t)k;
     for (size_t k = 0; k < sizeof of_cells / sizeof *of_cells; k++)
         enough = (*of_cells[k] = calloc(n->cells + 1, sizeof(double))) != NULL && enough;
     double **const of_crossings[] = {&n->sum, &n->phi, &n->given};
@@ -194,24 +225,25 @@ static bool make_room(net *n)
 
 static void release(net *n)
 {
-    void *const owned[] = {n->first,    n->crossing, n->t,      n->head, n->given,   n->sum,
-                           n->phi,      n->x,        n->r,      n->way,  n->y,       n->extra,
-                           n->diagonal, n->width,    n->closed, n->open, n->drained, n->drain};
+    void *const owned[] = {n->first,  n->crossing, n->t,       n->head,  n->given, n->sum,      n->phi,
+                           n->x,      n->r,        n->way,     n->y,     n->extra, n->diagonal, n->width,
+                           n->closed, n->open,     n->drained, n->drain, n->leak,  n->linked,   n->source,
+                           n->store,  n->mean,     n->from,    n->one,   n->two,   n->head_row, n->drain_row};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
 }
 
 /* Adds the drains that pass a cell. false: out of memory. */
-static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
+static bool add_drains(net *n, size_t e, const cell *c)
 {
     const tl_element_batch *b = n->b;
     tl_vec3 corner[TL_ELEMENT_NODES];
-    for (uint32_t i = 0; first_drain < n->cells && i < c->corners; i++)
+    for (uint32_t i = 0; n->drain_count > 0 && i < c->corners; i++)
         corner[i] = corner_of(n, c, i);
-    for (size_t k = first_drain; k < n->cells; k++) {
+    for (size_t i = 0; i < n->drain_count; i++) {
+        const uint32_t k = n->drain_row[i];
         double z;
-        if (role_of(n, k) != FLOW_AT_DRAIN ||
-            !flow_drain_meets(corner, c->corners, c->normal, node_at(b, b->start[k]), node_at(b, b->start[k] + 1), &z))
+        if (!flow_drain_meets(corner, c->corners, c->normal, node_at(b, b->start[k]), node_at(b, b->start[k] + 1), &z))
             continue;
         if (n->hits == n->hit_capacity) {
             const size_t more = n->hits ? 2 * n->hits : 64;
@@ -224,37 +256,29 @@ static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
         const double ratio = FLOW_WELL_RADIUS * sqrt(c->area) / b->weight[b->start[k]], w = n->width[e];
         const double conductance =
             2 * TL_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
-        n->drain[n->hits++] =
-            (hit){(uint32_t)e, (uint32_t)k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
+        n->drain[n->hits++] = (hit){(uint32_t)e, k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
         n->drained[e] = 1;
     }
     return true;
-}
-
-/* The first element that is a drain; `cells`: there is none. */
-static size_t find_drains(const net *n)
-{
-    size_t k = 0;
-    while (k < n->cells && role_of(n, k) != FLOW_AT_DRAIN)
-        k++;
-    return k;
 }
 
 /* Gives a crossing the head of the first box that the middle of a side lies in. */
 static void take_head(net *n, tl_vec3 middle, uint32_t crossing)
 {
     const tl_element_batch *b = n->b;
-    for (size_t k = 0; k < n->cells && role_of(n, k) == FLOW_AT_HEAD; k++)
+    for (size_t i = 0; i < n->head_count; i++) {
+        const uint32_t k = n->head_row[i];
         if ((n->head[crossing] == 0 || n->head[crossing] > k + 1) &&
             flow_in_box(node_at(b, b->start[k]), node_at(b, b->start[k] + 1), middle)) {
-            n->head[crossing] = (uint32_t)k + 1;
+            n->head[crossing] = k + 1;
             n->open[crossing] = 1;
             n->given[crossing] = n->p->unit_weight * b->element_state[FLOW_HEAD][k] - n->base;
         }
+    }
 }
 
 /* Fills in the cell of element e. false: out of memory. */
-static bool add_cell(net *n, size_t e, size_t first_drain)
+static bool add_cell(net *n, size_t e)
 {
     const tl_element_batch *b = n->b;
     const cell c = cell_of(n, e);
@@ -286,16 +310,13 @@ static bool add_cell(net *n, size_t e, size_t first_drain)
     n->x[e] = (made ? n->p->unit_weight * head : n->p->unit_weight * height_of(n, &c) + own / area) - n->base;
     n->closed[e] = dry;
     b->element_state[FLOW_AREA][e] = c.area;
-    return dry || add_drains(n, e, &c, first_drain);
+    return dry || add_drains(n, e, &c);
 }
 
 /* The least and largest head lie about it. */
 static double base_of(const net *n)
 {
-    for (size_t k = 0; k < n->cells; k++)
-        if (role_of(n, k) == FLOW_AT_HEAD)
-            return n->p->unit_weight * n->b->element_state[FLOW_HEAD][k];
-    return 0;
+    return n->head_count > 0 ? n->p->unit_weight * n->b->element_state[FLOW_HEAD][n->head_row[0]] : 0;
 }
 
 static bool build(net *n)
@@ -303,11 +324,10 @@ static bool build(net *n)
     if (!make_room(n))
         return false;
     n->base = base_of(n);
-    const size_t first_drain = find_drains(n);
     bool enough = true;
     for (size_t e = 0; e < n->cells && enough; e++)
         if (is_joint(n, e))
-            enough = add_cell(n, e, first_drain);
+            enough = add_cell(n, e);
     return enough;
 }
 
@@ -353,29 +373,27 @@ static double product(const net *n, const double *a, const double *b)
     return (part[0] + part[1]) + (part[2] + part[3]);
 }
 
-/* Fills the diagonal, and the right side into r. */
+/* Fills what the equations have without storage, and what cells store. */
 static void set_up(net *n)
 {
     for (size_t k = 0; k < n->hits; k++) {
-        n->extra[n->drain[k].cell] += n->drain[k].conductance;
-        n->r[n->drain[k].cell] += n->drain[k].conductance * n->drain[k].phi;
+        n->leak[n->drain[k].cell] += n->drain[k].conductance;
+        n->source[n->drain[k].cell] += n->drain[k].conductance * n->drain[k].phi;
     }
     for (size_t e = 0; e < n->cells; e++) {
         if (!is_joint(n, e) || n->closed[e])
             continue;
         const double area = n->b->element_state[FLOW_AREA][e], had = n->b->element_state[FLOW_APERTURE][e];
         if (n->step > 0) {
-            const double store = n->width[e] * area / (n->p->bulk * n->step);
-            n->extra[e] += store;
-            n->r[e] += store * n->x[e] - (had > 0 ? (n->width[e] - had) * area / n->step : 0);
+            n->store[e] = n->width[e] * area / n->p->bulk;
+            n->source[e] -= had > 0 ? (n->width[e] - had) * area / n->step : 0;
         }
-        double diagonal = n->extra[e];
+        n->linked[e] = n->leak[e];
         for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
             const uint32_t c = n->crossing[k];
-            diagonal += n->head[c] ? n->t[k] : n->t[k] * (1 - n->t[k] / n->sum[c]);
-            n->r[e] += n->head[c] ? n->t[k] * n->given[c] : 0;
+            n->linked[e] += n->head[c] ? n->t[k] : n->t[k] * (1 - n->t[k] / n->sum[c]);
+            n->source[e] += n->head[c] ? n->t[k] * n->given[c] : 0;
         }
-        n->diagonal[e] = diagonal;
     }
 }
 
@@ -419,6 +437,98 @@ static bool iterate(net *n)
         now = next;
     }
     return isfinite(now);
+}
+
+/* ---------------------------------------------------------------- time ------------------- */
+
+/* An implicit step of h from x, or with h = INFINITY what is steady. false: it does not converge. */
+static bool take_step(net *n, double h)
+{
+    for (size_t e = 0; e < n->cells; e++) {
+        const double store = n->store[e] / h;
+        n->extra[e] = n->leak[e] + store;
+        n->diagonal[e] = n->linked[e] + store;
+        n->r[e] = n->source[e] + store * n->x[e];
+    }
+    return iterate(n);
+}
+
+/* Largest difference of the potentials of cells, heads and drains. */
+static double range_of(const net *n)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (size_t e = 0; e < n->cells; e++) {
+        least = n->store[e] > 0 ? fmin(least, n->x[e]) : least;
+        most = n->store[e] > 0 ? fmax(most, n->x[e]) : most;
+    }
+    for (size_t c = 0; c < n->crossings; c++) {
+        least = n->head[c] ? fmin(least, n->given[c]) : least;
+        most = n->head[c] ? fmax(most, n->given[c]) : most;
+    }
+    for (size_t k = 0; k < n->hits; k++) {
+        least = fmin(least, n->drain[k].phi);
+        most = fmax(most, n->drain[k].phi);
+    }
+    return fmax(0, most - least);
+}
+
+/* Goes on from x by a part of h. `error` becomes the difference of one step and two, and `most` what it may be, Pa. */
+static bool try_part(net *n, double h, double *error, double *most)
+{
+    const size_t bytes = n->cells * sizeof *n->x;
+    memcpy(n->from, n->x, bytes);
+    if (!take_step(n, h))
+        return false;
+    memcpy(n->one, n->x, bytes);
+    memcpy(n->x, n->from, bytes);
+    if (!take_step(n, 0.5 * h))
+        return false;
+    memcpy(n->two, n->x, bytes);
+    if (!take_step(n, 0.5 * h))
+        return false;
+    double change = range_of(n), size = 0;
+    *error = 0;
+    for (size_t e = 0; e < n->cells; e++) {
+        if (!(n->store[e] > 0))
+            continue;
+        *error = fmax(*error, fabs(n->x[e] - n->one[e]));
+        change = fmax(change, fabs(n->x[e] - n->from[e]));
+        size = fmax(size, fabs(n->x[e]));
+    }
+    *most = STEP_ERROR * change + CONVERGED * size;
+    return true;
+}
+
+/* Takes over what a part of h has come to. */
+static void keep_part(net *n, double h)
+{
+    for (size_t e = 0; e < n->cells; e++) {
+        if (!(n->store[e] > 0))
+            continue;
+        const cell c = cell_of(n, e);
+        n->mean[e] += h / n->step * (n->two[e] + n->x[e] - n->one[e]);
+        n->x[e] = fmax(2 * n->x[e] - n->one[e], n->p->unit_weight * height_of(n, &c) - n->base);
+    }
+}
+
+/* Follows the water for the time since the last call. */
+static bool follow(net *n)
+{
+    double left = n->step, h = n->step, error, most;
+    while (left > 0) {
+        h = fmin(h, left);
+        if (!try_part(n, h, &error, &most))
+            return false;
+        if (error > most && h > n->step / MOST_PARTS) {
+            memcpy(n->x, n->from, n->cells * sizeof *n->x);
+            h *= 0.5;
+            continue;
+        }
+        keep_part(n, h);
+        left = h < left ? left - h : 0;
+        h *= error < 0.25 * most ? 2 : 1;
+    }
+    return true;
 }
 
 /* ---------------------------------------------------------------- what comes of it ------- */
@@ -467,24 +577,43 @@ static void give_flows(net *n)
     for (size_t e = 0; e < n->cells; e++)
         for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
             const uint32_t c = n->crossing[k];
-            const double q = n->t[k] * (n->x[e] - n->phi[c]);
+            const double q = n->t[k] * (n->mean[e] - n->phi[c]);
             flow[e] += 0.5 * fabs(q);
             if (n->head[c] && n->t[k] > 0)
                 flow[n->head[c] - 1] -= q;
         }
     for (size_t k = 0; k < n->hits; k++) {
         const hit *h = &n->drain[k];
-        const double q = n->closed[h->cell] ? 0 : h->conductance * (n->x[h->cell] - h->phi);
+        const double q = n->closed[h->cell] ? 0 : h->conductance * (n->mean[h->cell] - h->phi);
         flow[h->cell] += 0.5 * fabs(q);
         flow[h->drain] -= q;
     }
 }
 
+/* Marks heads and drains that reach no joint. */
+static void mark_ends(net *n)
+{
+    double *const closed = n->b->element_state[FLOW_CLOSED];
+    for (size_t i = 0; i < n->head_count; i++)
+        closed[n->head_row[i]] = 1;
+    for (size_t i = 0; i < n->drain_count; i++)
+        closed[n->drain_row[i]] = 1;
+    for (size_t c = 0; c < n->crossings; c++)
+        if (n->head[c])
+            closed[n->head[c] - 1] = 0;
+    for (size_t k = 0; k < n->hits; k++)
+        closed[n->drain[k].drain] = 0;
+}
+
 static void give_all(net *n)
 {
     const tl_element_batch *b = n->b;
+    if (n->flows) {
+        meet(n, n->mean, false);
+        give_flows(n);
+    }
     meet(n, n->x, false);
-    give_flows(n);
+    mark_ends(n);
     for (size_t e = 0; e < n->cells; e++) {
         b->element_state[FLOW_TIME][e] = b->time;
         if (!is_joint(n, e))
@@ -505,35 +634,44 @@ static TL_PRINTF(3, 4) tl_status refuse(tl_report *report, tl_status status, con
     return status;
 }
 
-/* Time since the last call, s. */
-static double step_of(const tl_element_batch *b)
+/* Time since pressures were found last, s; 0: never. */
+static double time_since(const net *n)
 {
+    const double *time = n->b->element_state[FLOW_TIME];
     double last = -1;
-    for (uint32_t e = 0; e < b->count; e++)
-        last = fmax(last, b->element_state[FLOW_TIME][e]);
-    return last < 0 ? 0 : b->time - last;
+    for (size_t e = 0; e < n->cells; e++)
+        last = fmax(last, time[e]);
+    return last < 0 ? 0 : n->b->time - last;
+}
+
+/* Whether some element has not been solved yet: one that was placed now. */
+static bool is_new(const net *n)
+{
+    bool some = false;
+    for (size_t e = 0; e < n->cells; e++)
+        some = some || n->b->element_state[FLOW_TIME][e] < 0;
+    return some;
 }
 
 static tl_status solve(net *n, tl_report *report)
 {
     if (!build(n))
         return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
-    n->step = n->p->steady ? 0 : step_of(n->b);
+    n->step = n->p->steady ? 0 : time_since(n);
+    n->flows = n->p->steady || n->step > 0 || is_new(n);
     if (n->p->steady &&
         !flow_find_closed(n->cells, n->first, n->crossing, n->crossings, n->open, n->drained, n->closed))
         return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
     still(n);
     set_up(n);
-    if ((n->p->steady || n->step > 0) && !iterate(n))
+    const bool follows = n->step > 0;
+    if (follows ? !follow(n) : n->p->steady && !take_step(n, INFINITY))
         return refuse(report, TL_E_NUMERIC,
                       "the flow does not converge in %d iterations for each of %u joints: bring residual and "
                       "maximum, %g and %g m, nearer to each other",
                       MOST_ITERATIONS, n->b->count, n->p->residual, n->p->maximum);
     for (size_t e = 0; e < n->cells; e++)
-        if (n->step > 0 && is_joint(n, e)) {
-            const cell c = cell_of(n, e);
-            n->x[e] = fmax(n->x[e], n->p->unit_weight * height_of(n, &c) - n->base);
-        }
+        n->mean[e] = follows && n->store[e] > 0 ? n->mean[e] : n->x[e];
     give_all(n);
     return TL_OK;
 }

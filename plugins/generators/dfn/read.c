@@ -57,7 +57,8 @@ tl_status discs_read(const tl_host *host, const char *file, discs *all)
     size_t length;
     tl_status status = tl_file_bytes(host, file, TL_SITE_FILE, &text, &length);
     if (status == TL_OK && memchr(text, '\0', length))
-        status = host->fail(host, TL_E_ARGUMENT, "file '%.200s': it holds a zero byte: it is no text", file);
+        status = host->fail(host, TL_E_ARGUMENT, "file '%.200s': it holds a zero byte: it is no text; save it as UTF-8",
+                            file);
     if (status == TL_OK)
         status = ends_in(file, ".fab") ? fab_read(host, file, text, all) : table_read(host, file, text, all);
     free(text);

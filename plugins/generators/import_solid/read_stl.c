@@ -1,8 +1,8 @@
 /* read_stl.c - STL, as text or binary. Each solid of a text is an object.
  *
  * Binary: 80 bytes, the number of triangles (32 bits), then for each 12 little-endian floats (normal and three corners)
- * and 2 bytes. Text: "facet normal", "outer loop", three times "vertex x y z", "endloop", "endfacet", each on a line of
- * its own, between "solid NAME" and "endsolid". The normals of the file are not used: the order of the corners tells
+ * and 2 bytes. Text: "facet normal", "outer loop", three times "vertex x y z", "endloop", "endfacet", on lines of their
+ * own or not, between "solid NAME" and "endsolid". The normals of the file are not used: the order of the corners tells
  * them. */
 #include "bytes.h"
 #include "text.h"
@@ -36,7 +36,7 @@ static tl_status read_binary(soup *s, const char *bytes, size_t triangles)
     return status;
 }
 
-/* What a line of the text must begin with, in order; after LAST comes FACET again, or "endsolid". */
+/* What comes after each other; after the last FACET again, or "endsolid". A line begins with one of them. */
 enum { FACET, OUTER, FIRST, SECOND, THIRD, END_LOOP, END_FACET, STATES };
 static const char *const words[STATES] = {"facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet"};
 
@@ -45,7 +45,7 @@ static tl_status unexpected(const soup *s, const text_line *l, const char *wante
     return SOUP_FAULT(s, ", line %zu: '%s' is expected, not '%.40s'; the file is damaged", l->number, wanted, l->word);
 }
 
-static tl_status read_line(soup *s, text_line *l, int *state, bool *inside)
+static tl_status read_part(soup *s, text_line *l, int *state, bool *inside)
 {
     tl_vec3 p;
     if (!*inside) {
@@ -69,6 +69,24 @@ static tl_status read_line(soup *s, text_line *l, int *state, bool *inside)
     if (status == TL_OK && *state == END_FACET)
         status = add_triangle(s);
     *state = (*state + 1) % STATES;
+    return status;
+}
+
+/* Goes to the next part in the rest of the line; false where it holds none. */
+static bool goes_on(text_line *l, int state)
+{
+    do
+        l->word = line_take(l);
+    while (l->word && !line_is(l, words[state]) && !(state == FACET && line_is(l, "endsolid")));
+    return l->word != NULL;
+}
+
+static tl_status read_line(soup *s, text_line *l, int *state, bool *inside)
+{
+    const bool name = !*inside;
+    tl_status status = read_part(s, l, state, inside);
+    while (status == TL_OK && !name && *inside && goes_on(l, *state))
+        status = read_part(s, l, state, inside);
     return status;
 }
 

@@ -99,6 +99,12 @@ static int by_place(tl_vec3 a, tl_vec3 b)
     return (a.z > b.z) - (a.z < b.z);
 }
 
+/* Normal of the corners, of twice the area. */
+static tl_vec3 facet_up(const facet *f)
+{
+    return tl_v3_cross(tl_v3_sub(f->corner[1], f->corner[0]), tl_v3_sub(f->corner[2], f->corner[0]));
+}
+
 tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_t line)
 {
     facet *at = (facet *)tl_grown(s->at, &s->capacity, s->count + 1, sizeof *at);
@@ -109,7 +115,14 @@ tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_
     *f = (facet){.row = row, .line = line};
     for (int k = 0; k < 3; k++)
         f->corner[k] = tl_v3_madd(s->translate, s->scale, corner[k]);
-    tl_vec3 up = tl_v3_cross(tl_v3_sub(f->corner[1], f->corner[0]), tl_v3_sub(f->corner[2], f->corner[0]));
+    while (by_place(f->corner[0], f->corner[1]) > 0 || by_place(f->corner[0], f->corner[2]) > 0) {
+        const tl_vec3 first = f->corner[0];
+        f->corner[0] = f->corner[1];
+        f->corner[1] = f->corner[2];
+        f->corner[2] = first;
+    }
+    /* of the corners in their last order, up to its sign: another one may round it to the other side */
+    tl_vec3 up = facet_up(f);
     if (!(fabs(up.z) > ROUNDINGS * tl_v3_norm(up)))
         return s->host->fail(s->host, TL_E_GEOMETRY,
                              "file '%.200s', triangle %u at {%g, %g, %g}: it is vertical or has no area, and so no "
@@ -119,14 +132,8 @@ tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_
         const tl_vec3 second = f->corner[1];
         f->corner[1] = f->corner[2];
         f->corner[2] = second;
+        up = facet_up(f);
     }
-    while (by_place(f->corner[0], f->corner[1]) > 0 || by_place(f->corner[0], f->corner[2]) > 0) {
-        const tl_vec3 first = f->corner[0];
-        f->corner[0] = f->corner[1];
-        f->corner[1] = f->corner[2];
-        f->corner[2] = first;
-    }
-    up = tl_v3_cross(tl_v3_sub(f->corner[1], f->corner[0]), tl_v3_sub(f->corner[2], f->corner[0]));
     f->normal = tl_v3_unit(up);
     f->fall[0] = -up.x / up.z;
     f->fall[1] = -up.y / up.z;

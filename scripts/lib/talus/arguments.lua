@@ -154,7 +154,10 @@ end
 function arguments.number(where, given, key, default, low, high)
     local value = value_of(where, given, key, default, "number", "a number")
     if not (value >= low and value <= high) then
-        fail("%s: %s = %s is outside [%s, %s]", where, key, value, low, high)
+        local function text(number)
+            return arguments.decimal("%.10g", number)
+        end
+        fail("%s: %s = %s is outside [%s, %s]", where, key, text(value), text(low), text(high))
     end
     return value
 end

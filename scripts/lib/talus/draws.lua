@@ -2,11 +2,19 @@
 --
 -- draw.normal("friction", 35, 3, { min = 20 }) gives a number. The same name gives the same number again; with another
 -- distribution it is an error. What was drawn is kept in `drawn`, by name, for the row of the realisation.
+--
+-- Correlated draws of a Latin hypercube: a sum of normal numbers of other strata has none of its own. So the stratum of each row is
+-- the rank of its sum among those of all rows (Stein, Technometrics 29, 1987). These are found once in a process.
 local arguments = require "talus.arguments"
 local chance = require "talus.chance"
 
 local fail = arguments.fail
 local draws = {}
+
+-- Realisations up to which correlated draws have strata, for all of them are held at once.
+local MOST_SPREAD = 1000000
+-- Share of a stratum that is left free at its ends, so that rounding takes no row across.
+local INSIDE = 1e-6
 
 local function finite(where, what, value)
     if type(value) ~= "number" or value ~= value or math.abs(value) == math.huge then
@@ -122,6 +130,61 @@ local function read_marginal(where, given)
     check_normal(where, family, given[1], given[2])
     local min, max = read_range(where, { min = given.min, max = given.max })
     return { family = family, mean = given[1], sd = given[2], min = min, max = max }
+end
+
+-- Correlated normal numbers of a row: the root times independent ones.
+local function correlated(seed, row, latin, names, root)
+    local normal, sums = {}, {}
+    for i, name in ipairs(names) do
+        normal[i], sums[i] = chance.normal_quantile(chance.uniform(seed, row, name, 0, latin)), 0
+        for k = 1, i do
+            sums[i] = sums[i] + root[i][k] * normal[k]
+        end
+    end
+    return sums
+end
+
+-- The shares below correlated numbers, lists by draw and row: in each stratum one row. A share lies as far into its stratum as the
+-- number lies in that where it would fall.
+local function spread(seed, latin, names, root)
+    local shares, order = {}, {}
+    for i = 1, #names do
+        shares[i] = {}
+    end
+    for row = 1, latin do
+        order[row] = row
+        for i, sum in ipairs(correlated(seed, row, latin, names, root)) do
+            shares[i][row] = sum
+        end
+    end
+    for _, share in ipairs(shares) do
+        table.sort(order, function(a, b)
+            return share[a] < share[b] or (share[a] == share[b] and a < b)
+        end)
+        for rank, row in ipairs(order) do
+            local at = latin * chance.normal_below(share[row])
+            share[row] = (rank - 1 + math.min(math.max(at - math.floor(at), INSIDE), 1 - INSIDE)) / latin
+        end
+    end
+    return shares
+end
+
+-- The same, kept while seed, names and correlations are the same.
+local kept = {}
+local function spread_once(where, seed, latin, names, root)
+    if latin > MOST_SPREAD then
+        fail("%s: with latin = true correlated draws are for at most %d realisations, not %d", where, MOST_SPREAD, latin)
+    end
+    local words = { seed, latin }
+    for i, name in ipairs(names) do
+        words[#words + 1] = name
+        table.move(root[i], 1, i, #words + 1, words)
+    end
+    local set, key = table.concat(names, "\n"), table.concat(words, "\n")
+    if not kept[set] or kept[set].key ~= key then
+        kept[set] = { key = key, shares = spread(seed, latin, names, root) }
+    end
+    return kept[set].shares
 end
 
 -- The draws of a row. `latin`: rows of the Latin hypercube, 0 for none.
@@ -243,17 +306,16 @@ function draws.new(seed, row, latin)
         if count < 2 or #marginals ~= count then
             fail("%s: %d names and %d pairs {mean, sd}: give two or more, and as many of both", where, count, #marginals)
         end
-        local root = read_correlation(where, correlation, count)
-        local normal, values = {}, {}
         for i = 1, count do
             check_name(where, names[i])
-            normal[i] = chance.normal_quantile(uniform(names[i]))
-            local z = 0
-            for k = 1, i do
-                z = z + root[i][k] * normal[k]
-            end
+        end
+        local root, values = read_correlation(where, correlation, count), {}
+        local shares = latin > 0 and spread_once(where, seed, latin, names, root)
+        local sums = not shares and correlated(seed, row, latin, names, root)
+        for i = 1, count do
             local m = read_marginal(("%s, '%s'"):format(where, names[i]), marginals[i])
-            values[i] = keep(where, names[i], cut_off(where, m.family, chance.normal_below(z), m.mean, m.sd, m.min, m.max),
+            local share = shares and shares[i][row] or chance.normal_below(sums[i])
+            values[i] = keep(where, names[i], cut_off(where, m.family, share, m.mean, m.sd, m.min, m.max),
                 told("correlated " .. m.family, m.mean, m.sd, m.min, m.max, table.unpack(root[i])))
         end
         return table.unpack(values)

@@ -371,6 +371,10 @@ local function go(run)
     run.log = log
     if log then
         read_file(run)
+        if #run.list > 0 then
+            workers.remark(("realisations: '%s' has %d rows already, which are not made again: after a change of the script delete it"):
+                format(run.file, #run.list))
+        end
         check_errors(run)
     end
     if #run.list < run.rows and not run.stopped then

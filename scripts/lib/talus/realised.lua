@@ -97,6 +97,9 @@ function methods.sd(self, field)
         fail("sd: '%s' has one number only", field)
     end
     local mean, sum = methods.mean(self, field), 0
+    if mean - mean ~= 0 then
+        fail("sd: '%s' has numbers that are not finite", field)
+    end
     for _, value in ipairs(list) do
         sum = sum + (value - mean) * (value - mean)
     end
@@ -112,8 +115,12 @@ function methods.quantile(self, field, share)
     table.sort(list)
     local place = 1 + share * (#list - 1)
     local low = math.floor(place)
-    local high = math.min(low + 1, #list)
-    return list[low] == list[high] and list[low] or list[low] + (place - low) * (list[high] - list[low])
+    local part, a, b = place - low, list[low], list[math.min(low + 1, #list)]
+    -- a part of an infinite difference is no number
+    if part == 0 or a == b or a == -math.huge then
+        return a
+    end
+    return a + part * (b - a)
 end
 
 -- {edges = {n + 1 numbers}, counts = {n}}; the last interval has both of its ends.

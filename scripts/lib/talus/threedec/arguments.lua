@@ -53,7 +53,7 @@ function arguments:number(what)
     end
     self.at = self.at + 1
     if token.kind == "number" then
-        return { lua = token.text, value = token.value, level = 9 }
+        return { lua = token.text, value = token.value, level = token.value < 0 and 3 or 9 }
     end
     local item = fish.expression(token.text, self.variables)
     if item.vector then

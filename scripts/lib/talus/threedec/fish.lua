@@ -118,7 +118,7 @@ function reader:operand()
         lexer.leave("FISH: a value is missing")
     elseif token == "-" then
         local item = self:power()
-        return { lua = "-" .. within(item, 3), value = -numeric(item, "-"), level = 3 }
+        return { lua = "-" .. within(item, 4), value = -numeric(item, "-"), level = 3 }
     elseif token == "+" then
         return self:power()
     elseif token == "(" then

@@ -6,7 +6,7 @@ local function gravity(c, a)
     local first = a:number "gravity"
     local y = a:optional()
     if not y then
-        c.emit("model.gravity = { 0, 0, -" .. (first.level < 3 and "(" .. first.lua .. ")" or first.lua) .. " }")
+        c.emit("model.gravity = { 0, 0, -" .. (first.level < 4 and "(" .. first.lua .. ")" or first.lua) .. " }")
         return
     end
     c.emit("model.gravity = " .. c.list { first, y, a:number "gravity" })
