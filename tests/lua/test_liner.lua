@@ -238,6 +238,7 @@ do
     m:cycle(5)
     local dir = os.getenv "TALUS_TEST_TMP" .. "/liner"
     m:write_vtk(dir)
+    m:write_html(dir .. ".html")
     local file = assert(io.open(dir .. "_elements_000000.vtk", "rb"))
     local text = file:read "a"
     file:close()

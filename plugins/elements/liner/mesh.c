@@ -15,7 +15,8 @@
 
 /* Tolerance: over the spacing, distance of corners that are one. Test: lua/test_liner. */
 #define SAME 0.05
-/* Tolerance: cotangents of two angles add up to less than -FLIPS where a side is flipped. Test: lua/test_liner. */
+/* Constant: cotangents of two angles add up to less than -FLIPS where a side is flipped: beyond rounding, so nothing is
+ * flipped for ever. */
 #define FLIPS 1e-9
 /* Limit: rounds of flips. */
 #define ROUNDS 20
