@@ -1,7 +1,8 @@
 /* element.c - the conformance check of elements.
  *
  * A kind places its elements in a world of two blocks: block 1 is all that lies at x < 0, block 2 the rest. The square
- * |y|, |z| < 1 at x = 0 is their walls, the halves y < 0 and y > 0. That at x = -1 is the outer face of block 1. With
+ * |y|, |z| < 1 at x = 0 is their walls, the halves y < 0 and y > 0. That at x = -1 is an outer face of block 1. The
+ * floors are outer faces, too, at z = -1: from there to x = 0 that of block 1, and on to x = 1 that of block 2. With
  * each set of parameters the nodes then go through random motions. An element that brings in nothing from outside is
  * internal: its forces are then in equilibrium, and do not see that all nodes turn and move together. What elements do
  * together comes before each update, as in a model whose steps are all due. */
@@ -26,6 +27,8 @@
 /* Constant: s, of a step, and m, that nodes move in it. */
 #define DT 1e-4
 #define WAY 1e-6
+/* Cost only: bytes of a line of the cache. */
+#define LINE 64
 /* Tolerance: forces, moments and energies that rounding explains, relative to their sizes: motions are 1e-6 of
  * lengths. */
 #define ROUNDING 1e-7
@@ -76,6 +79,7 @@ typedef struct trial {
     tl_line_node line[NODES];
     double dt, time;
     double stiffest; /* N/m, of stiffness() */
+    void *memory[ELEMENTS];
 } trial;
 
 /* ---------------------------------------------------------------- the world -------------- */
@@ -170,11 +174,14 @@ static tl_status line(const tl_element_host *h, tl_vec3 from, tl_vec3 to, double
 static tl_status faces(const tl_element_host *h, const char *group, tl_vec3 facing, double angle,
                        const tl_element_face **list, size_t *count)
 {
-    static const tl_vec3 corners[] = {{-1, -1, -1}, {-1, -1, 1}, {-1, 1, 1}, {-1, 1, -1}};
-    static const tl_element_face face = {1, 0, {-1, 0, 0}, corners, 4};
+    static const tl_vec3 wall[] = {{-1, -1, -1}, {-1, -1, 1}, {-1, 1, 1}, {-1, 1, -1}};
+    static const tl_vec3 floor1[] = {{-1, -1, -1}, {-1, 1, -1}, {0, 1, -1}, {0, -1, -1}};
+    static const tl_vec3 floor2[] = {{0, -1, -1}, {0, 1, -1}, {1, 1, -1}, {1, -1, -1}};
+    static const tl_element_face face[] = {
+        {1, 0, {-1, 0, 0}, wall, 4}, {1, 1, {0, 0, -1}, floor1, 4}, {2, 0, {0, 0, -1}, floor2, 4}};
     (void)h, (void)group, (void)facing, (void)angle;
-    *list = &face;
-    *count = 1;
+    *list = face;
+    *count = sizeof face / sizeof *face;
     return TL_OK;
 }
 
@@ -189,6 +196,64 @@ static tl_status walls(const tl_element_host *h, const tl_wall_filter *filter, c
     *list = halves;
     *count = 2;
     return TL_OK;
+}
+
+/* ---------------------------------------------------------------- memory ----------------- */
+
+/* All elements where they are, without motion; `state` and `whole` are lists to fill. */
+static tl_element_batch all_of(state_of *s, double *state[STATES], double *whole[STATES])
+{
+    for (int n = 0; n < STATES; n++) {
+        state[n] = s->state[n];
+        whole[n] = s->whole[n];
+    }
+    return (tl_element_batch){.size = sizeof(tl_element_batch),
+                              .count = s->count,
+                              .start = s->start,
+                              .rest = {s->rest[0], s->rest[1], s->rest[2]},
+                              .u = {s->u[0], s->u[1], s->u[2]},
+                              .du = {s->du[0], s->du[1], s->du[2]},
+                              .v = {s->v[0], s->v[1], s->v[2]},
+                              .normal = {s->normal[0], s->normal[1], s->normal[2]},
+                              .weight = s->weight,
+                              .state = state,
+                              .element_state = whole,
+                              .flags = s->flags,
+                              .force = {s->force[0], s->force[1], s->force[2]},
+                              .stored = s->stored,
+                              .lost = s->lost,
+                              .given = s->given};
+}
+
+static void forget(trial *t)
+{
+    for (int e = 0; e < ELEMENTS; e++) {
+        free(t->memory[e]);
+        t->memory[e] = NULL;
+    }
+}
+
+/* Gives elements the memory that their kind asks for, all 0. false: out of memory. */
+static bool remember(trial *t)
+{
+    size_t bytes[ELEMENTS] = {0};
+    double *state[STATES], *whole[STATES];
+    bool enough = true;
+    forget(t);
+    if (!t->ops->memory)
+        return true;
+    const tl_element_batch b = all_of(&t->now, state, whole);
+    tl_enter(t->c->kind, "memory");
+    t->ops->memory(t->self, &b, bytes);
+    tl_leave();
+    for (uint32_t e = 0; e < t->now.count; e++) {
+        const size_t lines = (bytes[e] + LINE - 1) / LINE + 1;
+        t->memory[e] = aligned_alloc(LINE, lines * LINE);
+        enough = enough && t->memory[e];
+        if (t->memory[e])
+            memset(t->memory[e], 0, lines * LINE);
+    }
+    return enough;
 }
 
 /* ---------------------------------------------------------------- updates ---------------- */
@@ -222,6 +287,7 @@ static tl_status update(trial *t, state_of *s, uint32_t first, uint32_t end)
     b.stored = s->stored + first;
     b.lost = s->lost + first;
     b.given = s->given + first;
+    b.memory = t->ops->memory ? t->memory + first : NULL;
     memset(b.lost, 0, b.count * sizeof *b.lost);
     memset(b.given, 0, b.count * sizeof *b.given);
     tl_enter(t->c->kind, "update");
@@ -404,13 +470,15 @@ static void check_numbers(trial *t)
         tl_check_note(t->c, FINITE, "a force, a state or an energy is not finite");
 }
 
-/* The same state by other ways: once more, and element by element. */
+/* The same state by other ways: once more, and element by element, which remember nothing. */
 static void check_batches(trial *t, const state_of *before)
 {
     t->other = *before;
     if (update(t, &t->other, 0, before->count) == TL_OK && memcmp(&t->other, &t->next, sizeof t->next) != 0)
         tl_check_note(t->c, REPEATS, "the same call gives another result");
     t->other = *before;
+    if (!remember(t))
+        return;
     for (uint32_t e = 0; e < before->count; e++)
         update(t, &t->other, e, e + 1);
     if (memcmp(&t->other, &t->next, sizeof t->next) != 0)
@@ -535,26 +603,7 @@ static void check_stiffness(trial *t)
 {
     state_of *s = &t->now;
     double k[NODES] = {0}, c[NODES] = {0}, *state[STATES], *whole[STATES];
-    for (int n = 0; n < STATES; n++) {
-        state[n] = s->state[n];
-        whole[n] = s->whole[n];
-    }
-    const tl_element_batch b = {.size = sizeof b,
-                                .count = s->count,
-                                .start = s->start,
-                                .rest = {s->rest[0], s->rest[1], s->rest[2]},
-                                .u = {s->u[0], s->u[1], s->u[2]},
-                                .du = {s->du[0], s->du[1], s->du[2]},
-                                .v = {s->v[0], s->v[1], s->v[2]},
-                                .normal = {s->normal[0], s->normal[1], s->normal[2]},
-                                .weight = s->weight,
-                                .state = state,
-                                .element_state = whole,
-                                .flags = s->flags,
-                                .force = {s->force[0], s->force[1], s->force[2]},
-                                .stored = s->stored,
-                                .lost = s->lost,
-                                .given = s->given};
+    const tl_element_batch b = all_of(s, state, whole);
     tl_enter(t->c->kind, "stiffness");
     t->ops->stiffness(t->self, &b, k, c);
     tl_leave();
@@ -573,6 +622,8 @@ static void run_trial(trial *t)
     bool internal[ELEMENTS];
     for (int e = 0; e < ELEMENTS; e++)
         internal[e] = true;
+    if (!remember(t))
+        return;
     check_stiffness(t);
     t->dt = 0; /* as the host does, once where they were placed */
     t->time = 1;
@@ -614,6 +665,7 @@ static tl_status try_set(tl_checker *c, void *params, void *user)
     } else if (status != TL_OK) {
         tl_fail(c->error, status, "%s", t->text);
     }
+    forget(t);
     if (t->ops->destroy)
         t->ops->destroy(t->self);
     return status;

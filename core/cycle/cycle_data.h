@@ -205,8 +205,8 @@ struct tl_cycle {
     size_t motion_capacity;
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
+    bool slides_on; /* a relaxation lets rigid bodies go on, too; not saved */
     tl_settling settling;
-    bool only_stops;          /* a relaxation makes no leaps; not saved */
     struct tl_secant *secant; /* of each contact, while there are leaps: secants.c */
     size_t secant_count, secant_capacity;
     struct tl_conjugate *conjugate; /* of each body, while there are leaps of many: conjugate.c */

@@ -80,7 +80,7 @@ static void go_beside(vibration *v, bool put)
 {
     const tl_model *m = v->m;
     const size_t elements = m->elements ? m->elements->table.table.rows : 0;
-    uint32_t on[TL_ELEMENT_NODES];
+    uint32_t on[TL_ELEMENT_MANY];
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
         for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
             const tl_sides of = tl_contact_bodies(m, at.contact);

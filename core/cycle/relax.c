@@ -124,7 +124,8 @@ static tl_status begin(tl_model *m, int64_t load_steps, motion *kept)
     if (status != TL_OK)
         return status;
     if (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, fall, TL_COLUMN_STEP) ||
-        (tl_model_deforms(m) && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, going, TL_COLUMN_STEP)))
+        ((tl_model_deforms(m) || m->cycle->slides_on) &&
+         !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, going, TL_COLUMN_STEP)))
         return tl_fail_memory(&m->error);
     const double share = m->cycle->settling.share;
     if (m->relaxing && share > 0 && share <= 1)

@@ -4,7 +4,7 @@
  * every body is stopped (P. A. Cundall 1976; M. R. Barnes, Computers and Structures 30 (1988) 685-695). Each body has
  * the inertia that suits one step, and the step is as long as it may be. So blocks find each other, slip and open by
  * steps that laws can follow. What next to nothing bears goes its own way: it falls, by its own mass (loose.h), and is
- * stopped where it lands.
+ * stopped where it lands. In a trial of a factor, and where some block is deformable, what slides on goes on, too.
  *
  * What is soft among what is stiff takes the root of the ratio of both in steps: a joint that presses on its edge,
  * columns, slivers. Once no body is far from equilibrium, leaps are tried: motions that would bring equilibrium by the
@@ -226,7 +226,7 @@ static void let_go_on(tl_model *m, double lost)
 }
 
 /* Stops all but loose bodies when these together work against the motion, and each loose one when it does. Where some
- * block is deformable, what slides on goes on. */
+ * block is deformable, or a trial asks for it, what slides on goes on. */
 static void move_on(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
@@ -234,7 +234,7 @@ static void move_on(tl_model *m, double dt)
     const double gravity = tl_v3_norm(m->config.gravity), lost = all_lost(m, dt);
     const bool stop = c->sums.power < 0, deforms = tl_model_deforms(m);
     put_none(c, stop ? lost : 0);
-    if (stop && deforms)
+    if (stop && m->bodies.going && (deforms || c->slides_on))
         let_go_on(m, lost);
     if (deforms)
         tl_gridpoints_brake(m, stop, lost, 0.5 * (m->dt + dt));
@@ -436,8 +436,6 @@ static bool begin_leaps(tl_model *m)
     tl_settling *s = &c->settling;
     if (s->stops > 0)
         s->stops--;
-    if (c->only_stops)
-        return false;
     const bool secants = goes_by_secants(m);
     if (s->stops > 0 || !(c->sums.worst_ratio < (secants ? NEAR_REST : MANY_NEAR_REST)) || !may_leap(m) ||
         tl_loads_lag(m) || s->carried >= MOST_CARRIED)

@@ -8,7 +8,10 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
     const struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     const tl_node_table *n = &e->nodes;
-    const size_t first = of->node_begin;
+    const size_t first = of->node_begin, count = of->node_end - first;
+    const bool many = count > TL_ELEMENT_NODES;
+    double *const room = many ? e->room + 9 * first : lanes->own[0];
+    const size_t stride = many ? count : TL_ELEMENT_NODES;
     tl_element_batch batch = {.size = sizeof batch,
                               .count = of->end - of->begin,
                               .dt = tl_law_time(m, m->dt),
@@ -21,8 +24,12 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
                               .flags = t->flags + of->begin,
                               .stored = t->stored + of->begin,
                               .lost = t->lost + of->begin,
-                              .given = t->given + of->begin};
+                              .given = t->given + of->begin,
+                              .memory = e->memory ? e->memory + of->begin : NULL};
     for (int k = 0; k < 3; k++) {
+        lanes->du[k] = room + (size_t)k * stride;
+        lanes->v[k] = room + (size_t)(3 + k) * stride;
+        lanes->normal[k] = room + (size_t)(6 + k) * stride;
         batch.rest[k] = n->rest[k] + first;
         batch.u[k] = n->u[k] + first;
         batch.du[k] = lanes->du[k];

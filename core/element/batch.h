@@ -7,7 +7,8 @@
 
 /* Columns of a chunk that are found anew in each step. */
 typedef struct tl_element_lanes {
-    double du[3][TL_ELEMENT_NODES], v[3][TL_ELEMENT_NODES], normal[3][TL_ELEMENT_NODES];
+    double *du[3], *v[3], *normal[3];
+    double own[9][TL_ELEMENT_NODES];                               /* for these, but of an element with more nodes */
     uint32_t start[TL_ELEMENT_NODES + 1], flags[TL_ELEMENT_NODES]; /* flags: as they were */
     double *state[TL_ELEMENT_COLUMNS], *element_state[TL_ELEMENT_COLUMNS];
 } tl_element_lanes;

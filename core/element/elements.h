@@ -111,6 +111,10 @@ struct tl_elements {
     double most_k, most_c; /* of all nodes, where there are lists, N/m and N s/m */
     uint32_t *carried;     /* rows of nodes in zones, ascending */
     size_t carried_count, carried_capacity;
+    void **memory; /* of elements, what their kinds keep between steps (memory.c); NULL: of none */
+    unsigned char *memory_block;
+    double *room;        /* [9 for each node] motions and normals of elements with many nodes; NULL: there are none */
+    uint64_t remembered; /* version for which there is memory */
     tl_id next_id;
     uint64_t version;  /* counts changes of elements, nodes and their carriers */
     uint64_t listed;   /* version for which there are chunks and lists */

@@ -8,6 +8,7 @@
 #include "base/inside.h"
 #include "element/batch.h"
 #include "element/carry.h"
+#include "element/memory.h"
 #include "element/relay.h"
 #include "element/set.h"
 #include "element/steady.h"
@@ -126,7 +127,7 @@ void tl_elements_follow(tl_model *m)
 
 /* ---------------------------------------------------------------- lists ------------------ */
 
-/* Shares of threads: whole elements of one set, of at most TL_ELEMENT_NODES nodes. */
+/* Shares of threads: whole elements of one set, of at most TL_ELEMENT_NODES nodes together. */
 static bool list_chunks(struct tl_elements *e)
 {
     const tl_element_table *t = &e->table;
@@ -245,6 +246,12 @@ tl_status tl_elements_ready(tl_model *m)
         if (!list_nodes(m) || !tl_steady_fit(m))
             return tl_fail_memory(&m->error);
         e->listed = e->version;
+        e->remembered = 0;
+    }
+    if (e->remembered != e->version) {
+        if (!tl_elements_remember(m))
+            return tl_fail_memory(&m->error);
+        e->remembered = e->version;
     }
     for (size_t k = 0; e->rated != e->version && k < e->chunk_count && status == TL_OK; k++)
         status = rate_chunk(m, &e->chunk[k]);

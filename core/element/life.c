@@ -1,6 +1,7 @@
 /* life.c - the tables of elements come and go. */
 #include "element/life.h"
 
+#include "element/memory.h"
 #include "element/set.h"
 
 #include <stdlib.h>
@@ -75,6 +76,7 @@ void tl_elements_free(struct tl_elements *e)
     tl_table_free(&e->table.table);
     tl_table_free(&e->nodes.table);
     tl_table_free(&e->steady.table);
+    tl_elements_forget(e);
     void *const owned[] = {e->set, e->chunk, e->use, e->use_start, e->steady_start, e->carried};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);

@@ -71,11 +71,12 @@ static tl_status add(const tl_element_host *host, const tl_new_element *element)
 {
     tl_placing *p = placing_of(host);
     tl_model *m = p->m;
-    if (element->count == 0 || element->count > TL_ELEMENT_NODES)
+    const size_t most = ((const tl_element_ops *)p->kind->ops)->memory ? TL_ELEMENT_MANY : TL_ELEMENT_NODES;
+    if (element->count == 0 || element->count > most)
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "an element would have %zu nodes, and 1 to %d are allowed: make the spacing longer, or several "
+                       "an element would have %zu nodes, and 1 to %zu are allowed: make the spacing longer, or several "
                        "elements",
-                       element->count, TL_ELEMENT_NODES);
+                       element->count, most);
     tl_status status = TL_OK;
     for (size_t k = 0; k < element->count && status == TL_OK; k++)
         status = check_node(p, &element->nodes[k], k);

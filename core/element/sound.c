@@ -49,7 +49,7 @@ const char *tl_elements_unsound(const tl_model *m)
         return "elements have an impossible count of changes";
     for (size_t row = 0; row < t->table.rows; row++) {
         if (t->id[row] <= last || t->id[row] >= e->next_id || t->set[row] >= e->set_count ||
-            t->node_begin[row] != next || t->node_count[row] == 0 || t->node_count[row] > TL_ELEMENT_NODES ||
+            t->node_begin[row] != next || t->node_count[row] == 0 || t->node_count[row] > TL_ELEMENT_MANY ||
             t->node_count[row] > e->nodes.table.rows - next)
             return "an element has an impossible value";
         last = t->id[row];

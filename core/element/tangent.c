@@ -134,7 +134,8 @@ static tl_status ask(trial *t, const motion *by)
                           .flags = &flags,
                           .stored = &stored,
                           .lost = &lost,
-                          .given = &given};
+                          .given = &given,
+                          .memory = e->memory ? &e->memory[t->row] : NULL}; /* no result depends on it */
     double sum = 0;
     for (int k = 0; k < 3; k++) {
         b.rest[k] = t->rest[k];

@@ -1,6 +1,7 @@
 /* scene_elements.c - see scene_elements.h; docs/scene_format.md says what is in the chunks.
  *
- * An element with nodes inside of blocks is a line through them. One with nodes on faces is shown where its kind has a
+ * An element with nodes inside of blocks is a line through them. One of triangles is shown as these, each as an element
+ * of its own with the same id. Another with nodes on faces is shown where its kind has a
  * state "pressure": as the polygon in which its two walls face each other, or as its one wall. A pressure that is
  * linear on the polygon has three nodes on each wall. They give it at every corner, and the line on which it is zero:
  * the part beyond that is left out. More than three nodes on a wall are the corners of the polygon, in order. Elements
@@ -68,6 +69,11 @@ static bool has_pressure(const tl_kind *kind)
     return tl_element_column(kind, PRESSURE, &column, &whole) && !whole;
 }
 
+static bool has_triangles(const struct tl_elements *e, size_t row)
+{
+    return tl_element_ops_of(&e->set[e->table.set[row]])->triangles != 0;
+}
+
 /* Whether any node is on a block, or stands for something. */
 static bool acts(const struct tl_elements *e, size_t row)
 {
@@ -82,7 +88,7 @@ static bool acts(const struct tl_elements *e, size_t row)
 static bool is_shown(const struct tl_elements *e, size_t row)
 {
     return is_line(e, row) ? e->table.node_count[row] > 1 && acts(e, row)
-                           : has_pressure(e->set[e->table.set[row]].kind);
+                           : has_triangles(e, row) || has_pressure(e->set[e->table.set[row]].kind);
 }
 
 /* Adds states with a unit; those without are flags, of which the element's own tell. */
@@ -290,6 +296,15 @@ static void add_line(columns *c, size_t row)
     add_nodes(c, row, t->node_begin[row], t->node_count[row]);
 }
 
+static void add_triangles(columns *c, size_t row)
+{
+    const tl_element_table *t = &c->m->elements->table;
+    for (uint32_t k = 0; k + 3 <= t->node_count[row]; k += 3) {
+        add_element(c, row, 3, FACE);
+        add_nodes(c, row, t->node_begin[row] + k, 3);
+    }
+}
+
 /* A polygon whose corners are nodes; nothing where all of it is dry. */
 static void add_corners(columns *c, size_t row, size_t begin, size_t count)
 {
@@ -383,6 +398,8 @@ tl_status tl_scene_elements(tl_model *m, tl_piece *out)
         if (is_shown(m->elements, row)) {
             if (is_line(m->elements, row))
                 add_line(&c, row);
+            else if (has_triangles(m->elements, row))
+                add_triangles(&c, row);
             else
                 add_wall(&c, row);
         }

@@ -1,7 +1,7 @@
 /* vtk_elements.c - the elements of a frame.
  *
  * An element is a cell of an UNSTRUCTURED_GRID, its nodes are points where they are now. Nodes on faces are a cloud
- * (cell type 2), others a polyline (4).
+ * (cell type 2), others a polyline (4). One of triangles has a cell for each (5), all with the data of the whole.
  *
  * Point data  displacement  since it was installed, m
  *             force         on its block, N
@@ -43,6 +43,17 @@ static bool lies_on_a_face(const struct tl_elements *e, size_t row)
     return tl_v3_norm2(tl_columns_get(e->nodes.outward, e->table.node_begin[row])) > 0;
 }
 
+static bool has_triangles(const struct tl_elements *e, size_t row)
+{
+    return tl_element_ops_of(&e->set[e->table.set[row]])->triangles != 0;
+}
+
+/* Cells of an element: one, or one for each triangle. */
+static uint32_t cells_of(const struct tl_elements *e, size_t row)
+{
+    return has_triangles(e, row) ? e->table.node_count[row] / 3 : 1;
+}
+
 /* The value of a state by its name; NaN: the kind has none of it. */
 static double state_of(const struct tl_elements *e, size_t element, size_t row, const char *name, bool whole)
 {
@@ -67,18 +78,21 @@ static unsigned char *put_node(const list *l, size_t element, size_t row, unsign
     }
 }
 
-static unsigned char *put_element(const list *l, size_t row, unsigned char *to)
+/* Cell `cell` of an element. */
+static unsigned char *put_cell(const list *l, size_t row, uint32_t cell, unsigned char *to)
 {
     const tl_element_table *t = &l->m->elements->table;
+    const bool triangle = has_triangles(l->m->elements, row);
+    const uint32_t count = triangle ? 3 : t->node_count[row];
     switch (l->of) {
     case ID: return tl_vtk_put_int(to, (int32_t)t->id[row]);
     case FLAGS: return tl_vtk_put_int(to, (int32_t)t->flags[row]);
     case STORED: return tl_vtk_put_float(to, t->stored[row]);
-    case TYPES: return tl_vtk_put_int(to, lies_on_a_face(l->m->elements, row) ? 2 : 4);
+    case TYPES: return tl_vtk_put_int(to, triangle ? 5 : lies_on_a_face(l->m->elements, row) ? 2 : 4);
     case CELLS:
-        to = tl_vtk_put_int(to, (int32_t)t->node_count[row]);
-        for (uint32_t k = 0; k < t->node_count[row]; k++)
-            to = tl_vtk_put_int(to, (int32_t)(t->node_begin[row] + k));
+        to = tl_vtk_put_int(to, (int32_t)count);
+        for (uint32_t k = 0; k < count; k++)
+            to = tl_vtk_put_int(to, (int32_t)(t->node_begin[row] + count * cell + k));
         return to;
     default: return tl_vtk_put_float(to, state_of(l->m->elements, row, row, l->name, true));
     }
@@ -99,12 +113,21 @@ static void fill(const void *user, size_t begin, size_t end, tl_piece *piece)
         if (!first)
             return;
         if (l->of >= ID)
-            to = put_element(l, row, to);
+            for (uint32_t k = 0; k < cells_of(l->m->elements, row); k++)
+                to = put_cell(l, row, k, to);
         else
             for (uint32_t k = 0; k < t->node_count[row]; k++)
                 to = put_node(l, row, t->node_begin[row] + k, to);
         piece->length += (size_t)(to - first);
     }
+}
+
+static size_t cell_count(const struct tl_elements *e)
+{
+    size_t sum = 0;
+    for (size_t row = 0; row < e->table.table.rows; row++)
+        sum += cells_of(e, row);
+    return sum;
 }
 
 static tl_status put_list(tl_model *m, int of, const char *name, tl_pieces *out)
@@ -115,7 +138,7 @@ static tl_status put_list(tl_model *m, int of, const char *name, tl_pieces *out)
 
 static tl_status put_array(tl_model *m, const char *name, size_t width, const char *type, int of, tl_pieces *out)
 {
-    const size_t rows = of >= ID ? m->elements->table.table.rows : m->elements->nodes.table.rows;
+    const size_t rows = of >= ID ? cell_count(m->elements) : m->elements->nodes.table.rows;
     tl_vtk_array(out->output->file, name, width, rows, type);
     return put_list(m, of, name, out);
 }
@@ -161,7 +184,7 @@ tl_status tl_vtk_elements(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out
     tl_elements_follow(m);
     const struct tl_elements *e = m->elements;
     FILE *file = out->output->file;
-    const size_t cells = e->table.table.rows, points = e->nodes.table.rows;
+    const size_t cells = cell_count(e), points = e->nodes.table.rows;
     tl_status status = tl_vtk_countable(cells + points, "elements", &m->error);
     tl_vtk_header(file, m, "elements", "UNSTRUCTURED_GRID", false);
     fprintf(file, "POINTS %zu double\n", points);

@@ -1,24 +1,29 @@
 /* trial.c - whether a model comes to rest with its strengths divided by a factor.
  *
- * A copy of the model comes to rest with its strengths raised by 1 / RAISED. Elastic joints settle then, and nothing
- * slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
- * (cycle/relax.c) or something moves on.
+ * A copy of the model comes to rest with its strengths raised by 1 / TL_LEAST_FACTOR. Elastic joints settle then, and
+ * nothing slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to
+ * rest (cycle/relax.c) or something moves on.
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
  * weight, so what moves then slips. What is held by friction slips for a while and is slower from look to look. What
  * is not held becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become
- * shorter, or that has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
- * What elements hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise
- * of their force would bear what drives it after CAUGHT of its radius.
+ * shorter, or that has gone FAR u. What slides on goes on where all others are stopped (cycle/settle.c). What elements
+ * hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force
+ * would bear what drives it after CAUGHT of its radius.
+ *
+ * Soft joints turn what lies on them as they settle, and their motion takes many steps. So joints with which u is more
+ * than SOFT of a block are made stiffer in all copies: with the same forces, all ways become shorter by as much.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
  * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
  * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
  * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
  *
- * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone far. While joints settle and
- * blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
+ * A copy with stiffer joints begins as the model was cut (cycle/put_back.c), where that may be.
+ *
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone SUSPECT u. While joints settle
+ * and blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
  *
  * Where contacts chatter, forces need thousands of steps to balance while nothing moves. So a trial also rests in which
  * no body has moved by STILL u in STILLS looks in a row. A body whose unbalanced force is e of its weight goes by
@@ -31,40 +36,30 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/number.h"
-#include "base/strength.h"
 #include "cycle/cycle_data.h"
 #include "cycle/element_forces.h"
 #include "cycle/element_strength.h"
 #include "cycle/failing.h"
 #include "cycle/joint_law.h"
 #include "cycle/meshes.h"
+#include "cycle/put_back.h"
 #include "cycle/rest.h"
-#include "model/joints.h"
 #include "model/options.h"
 #include "model/rows.h"
-#include "model/scope.h"
+#include "safety/asked.h"
 #include "zone/solids.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/number.h>
 #include <talus/talus.h>
-#include <talus/workers.h>
 
-/* Tolerance: what strengths are divided by while joints settle: nothing that holds at all slips then. */
-#define RAISED 0.05
 /* Tolerance: local unbalanced force ratio that is rest. */
 #define RESTS 1e-4
 /* Tolerance: local unbalanced force ratio above which a model that moves is not at rest. */
 #define MOVES 1e-2
-/* Tolerance: way over u from which on a body is watched. */
+/* Tolerance: way over u from which on a body is watched, and a relaxation's verdict counts. */
 #define SUSPECT 10.0
-/* Tolerance: way over u, or if less over the radius of the largest body, from which on a relaxation's verdict counts.
- * In cut rock blocks have slipped by 15 u, a hundredth of their size, and stood still. */
-#define CERTAIN 30.0
-#define CERTAIN_SIZE 0.05
 /* Tolerance: way over u from which on a body fails anyway. */
 #define FAR 300.0
 /* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
@@ -74,13 +69,19 @@
 #define STIFFER 10.0
 #define GROWN 2.0
 #define STIFFEST 1000.0
+/* Tolerance: u over the radius of the largest body above which joints are made stiffer. Test: lua/test_safety_rock. */
+#define SOFT 1e-4
+/* Tolerance: way over the radius of the largest body up to which blocks have only settled, and may go back to where
+ * they were cut. Test: lua/test_safety_rock. */
+#define SETTLED 0.05
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
 /* Tolerance: way over the radius of a body within which elements that tighten are to stop it. */
 #define CAUGHT 0.03
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
-/* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests. */
+/* Tolerance: likewise, below which a body stands still. A model in which all do, in STILLS looks in a row, rests.
+ * Test: lua/test_safety_rock. */
 #define STILL 0.005
 #define STILLS 4
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
@@ -126,145 +127,6 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
     if (status == TL_OK && t->stiffness > 1)
         status = tl_joints_stiffen(copy, t->stiffness);
     return told(t, copy, status);
-}
-
-/* ---------------------------------------------------------------- what is asked ---------- */
-
-static tl_status check_number(const tl_trials *t, const char *name, double value, bool good, const char *allowed)
-{
-    char text[TL_NUMBER_TEXT];
-    tl_number_text(value, text);
-    return good ? TL_OK
-                : tl_fail(&t->asked->error, TL_E_ARGUMENT, "%s: %s = %s must be %s", t->what, name, text, allowed);
-}
-
-static tl_status check_options(const tl_trials *t)
-{
-    const tl_safety *o = &t->options;
-    char from[TL_NUMBER_TEXT], to[TL_NUMBER_TEXT];
-    tl_number_text(o->from, from);
-    tl_number_text(o->to, to);
-    tl_status status = check_number(t, "from", o->from, o->from >= RAISED && isfinite(o->from), "at least 0.05");
-    if (status == TL_OK)
-        status = check_number(t, "to", o->to, isfinite(o->to), "a finite number");
-    if (status == TL_OK && !(o->from < o->to))
-        status = tl_fail(&t->asked->error, TL_E_ARGUMENT, "%s: from = %s must be below to = %s", t->what, from, to);
-    if (status == TL_OK)
-        status = check_number(t, "resolution", o->resolution, o->resolution >= 1e-4 && o->resolution <= 0.5,
-                              "in [1e-4, 0.5]");
-    if (status == TL_OK)
-        status = check_number(t, "step", o->step, o->step >= 1e-3 && isfinite(o->step), "at least 0.001");
-    if (status == TL_OK)
-        status = check_number(t, "least_volume", o->least_volume, o->least_volume >= 0 && isfinite(o->least_volume),
-                              "a finite number >= 0");
-    if (status == TL_OK)
-        status = check_number(t, "max_cycles", (double)o->max_cycles, o->max_cycles >= 1, "at least 1");
-    if (status == TL_OK)
-        status = check_number(t, "workers", (double)o->workers, o->workers >= 1 && o->workers <= TL_MOST_WORKERS,
-                              "in [1, 256]");
-    return status;
-}
-
-/* Marks the laws of one name. */
-static tl_status mark_laws(tl_trials *t, const char *name)
-{
-    tl_model *m = t->asked;
-    tl_tag tag;
-    char error[TL_ERROR_TEXT];
-    bool some = false;
-    if (tl_joint_parse(m, name, &tag) != TL_OK) {
-        tl_text_print(error, sizeof error, "%s", m->error.text);
-        return tl_fail(&m->error, TL_E_ARGUMENT, "%s: joints: %s", t->what, error);
-    }
-    for (size_t i = 0; i < m->joint_law_count; i++)
-        if (tl_tag_matches(tag, m->joint_laws[i].scope.tag)) {
-            t->which[i] = 1;
-            some = true;
-        }
-    return some ? TL_OK
-                : tl_fail(&m->error, TL_E_ARGUMENT,
-                          "%s: joint '%s' has no law of its own whose strengths could be divided; give it one", t->what,
-                          name);
-}
-
-/* Names the laws that have no strengths, when none has. */
-static tl_status say_unmarked(const tl_trials *t)
-{
-    tl_model *m = t->asked;
-    char names[200] = "";
-    size_t used = 0;
-    for (size_t i = 0; i < m->joint_law_count; i++) {
-        const char *name = m->joint_laws[i].kind->name;
-        if (t->which[i] && !strstr(names, name) && used + strlen(name) + 8 < sizeof names) {
-            tl_text_print(names + used, sizeof names - used, "%s'%s'", used ? ", " : "", name);
-            used = strlen(names);
-        }
-    }
-    if (!used)
-        return tl_fail(&m->error, TL_E_STATE, "%s: the model has no law whose strengths could be divided", t->what);
-    return tl_fail(&m->error, TL_E_ARGUMENT,
-                   "%s: no parameter of the laws %s is marked as a strength, so there is nothing to divide; a plugin "
-                   "marks them with TL_PARAM_STRENGTH",
-                   t->what, names);
-}
-
-static tl_status choose_laws(tl_trials *t)
-{
-    const tl_model *m = t->asked;
-    const tl_safety *o = &t->options;
-    tl_status status = TL_OK;
-    bool some = false;
-    t->which = calloc(m->joint_law_count + 1, 1);
-    if (!t->which)
-        return tl_fail_memory(&t->asked->error);
-    if (o->joints)
-        for (size_t k = 0; k < o->joint_count && status == TL_OK; k++)
-            status = mark_laws(t, o->joints[k]);
-    else
-        memset(t->which, 1, m->joint_law_count);
-    for (size_t i = 0; i < m->joint_law_count; i++) {
-        const bool has = tl_kind_has_strength(m->joint_laws[i].kind);
-        some = some || (t->which[i] && has);
-    }
-    for (size_t k = 0; o->solids && m->zones && k < m->zones->solid_count; k++)
-        some = some || tl_kind_has_strength(m->zones->solid[k].of.kind);
-    some = some || (o->elements && tl_elements_have_strength(m));
-    if (status == TL_OK && !some)
-        return say_unmarked(t);
-    for (size_t i = 0; i < m->joint_law_count; i++)
-        t->which[i] = t->which[i] && tl_kind_has_strength(m->joint_laws[i].kind);
-    return status;
-}
-
-/* Refuses what has no factor: nothing that is free, or something that is driven. */
-static tl_status check_bodies(const tl_trials *t)
-{
-    const tl_model *m = t->asked;
-    size_t free = 0;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        free += tl_body_is_free(m, body);
-        if (m->bodies.drive[body])
-            return tl_fail(&t->asked->error, TL_E_STATE, "%s: block %u is driven: take the drive off first", t->what,
-                           m->bodies.id[body]);
-    }
-    return free > 0 ? TL_OK : tl_fail(&t->asked->error, TL_E_STATE, "%s: nothing can move: no block is free", t->what);
-}
-
-static void no_job(void *user, uint64_t job, const void **data, size_t *size)
-{
-    (void)user, (void)job, (void)data, (void)size;
-}
-
-/* Refuses processes where there can be none, before any work is done. */
-static tl_status check_processes(const tl_trials *t)
-{
-    tl_workers *workers = NULL;
-    tl_error error;
-    if (t->options.workers < 2)
-        return TL_OK;
-    tl_status status = tl_workers_start(1, no_job, NULL, &workers, &error);
-    tl_workers_end(workers);
-    return status == TL_OK ? TL_OK : tl_fail(&t->asked->error, status, "%s: %s", t->what, error.text);
 }
 
 /* Refuses a model that is under way: what would be asked is where it rests. `copy` is one of it. */
@@ -331,9 +193,9 @@ typedef struct watch {
     const tl_trials *t;
     look *look;       /* [bodies] */
     tl_vec3 *pull;    /* [bodies], force of elements now, N */
-    int64_t looked;   /* cycle of the last look */
     int32_t still;    /* looks in a row in which all bodies stood still */
     bool rigid_trial; /* of a trial, not of a first copy, and only joints give */
+    int64_t looked;   /* cycle of the last look */
     bool fails;
     tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     bool strained; /* ... for it is strained on and on */
@@ -540,11 +402,10 @@ static double largest_radius(const tl_model *m)
 static bool confirmed(const watch *w, const tl_model *copy, tl_id failing)
 {
     const double settles = w->t->measured ? w->t->settles : settles_now(copy);
-    const double least = fmax(SUSPECT * settles, fmin(CERTAIN * settles, CERTAIN_SIZE * largest_radius(copy)));
     bool far = copy->cycle->fails_strained;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         if (copy->bodies.id[body] == failing)
-            far = far || gone_of(w, copy, body) > least;
+            far = far || gone_of(w, copy, body) > SUSPECT * settles;
     return far;
 }
 
@@ -605,26 +466,26 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
     return take_out(w, copy, fall);
 }
 
-/* Brings a copy to rest, or finds what fails. */
-static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_trial *trial, tl_fall *fall)
+/* Brings a copy to rest, with high strengths or `weakened`, or finds what fails. */
+static tl_status settle(tl_trials *t, tl_model *copy, bool weakened, tl_safety_trial *trial, tl_fall *fall)
 {
     watch w;
     tl_status status = TL_OK;
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
-    w.rigid_trial = !leaps && !tl_model_deforms(copy) && !copy->elements;
+    w.rigid_trial = weakened && !tl_model_deforms(copy) && !copy->elements;
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
         tl_relax_result r;
         relax.ratio = RESTS;
+        if (copy->cycle)
+            copy->cycle->slides_on = weakened;
         relax.max_cycles = t->options.max_cycles - trial->cycles;
         relax.every = t->window;
         relax.each = on_step;
         relax.stop = looks;
         relax.user = &w;
-        if (copy->cycle)
-            copy->cycle->only_stops = !leaps;
         status = tl_model_relax(copy, &relax, &r);
         t->cycles += r.run.cycles;
         trial->cycles += r.run.cycles;
@@ -659,25 +520,71 @@ static tl_status measure(tl_trials *t, int64_t settled)
     return TL_OK;
 }
 
-static void end_stiffer(tl_trials *t)
-{
-    if (!t->stiffer)
-        return;
-    end_stiffer(t->stiffer);
-    if (t->stiffer->base)
-        tl_model_destroy(t->stiffer->base);
-    free(t->stiffer);
-    t->stiffer = NULL;
-}
-
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
     forget_made(t);
-    end_stiffer(t);
-    tl_status status = settle(t, t->base, true, &trial, fall);
+    tl_status status = settle(t, t->base, false, &trial, fall);
     if (status == TL_OK && trial.holds)
         status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
+    return status;
+}
+
+/* Makes the copy of which trials are copies. *rests: it has come to rest with high strengths; else `fall` has what does
+ * not. */
+static tl_status make_base(tl_trials *t, tl_fall *fall, bool *rests)
+{
+    tl_safety_trial trial;
+    t->base = NULL;
+    t->measured = false;
+    t->window = 100;
+    tl_status status = copy_of(t, t->asked, &t->base);
+    if (status == TL_OK)
+        status = check_rest(t, t->base);
+    if (status == TL_OK && t->stiffness > 1)
+        tl_put_back(t->base);
+    if (status == TL_OK)
+        status = weaken(t, t->base, TL_LEAST_FACTOR);
+    if (status != TL_OK)
+        return status;
+    t->settles = largest_radius(t->base) / SUSPECT; /* before the first rest only the size of bodies says what is far */
+    status = settle(t, t->base, false, &trial, fall);
+    *rests = status == TL_OK && trial.holds;
+    if (*rests)
+        t->may_put_back = tl_may_put_back(t->asked, SETTLED * largest_radius(t->base));
+    return *rests ? measure(t, trial.cycles) : status;
+}
+
+/* Whether joints are to be stiffer. Beside zones and elements they stay as they are: what each of them bears hangs on
+ * all their stiffnesses. */
+static bool is_soft(const tl_trials *t)
+{
+    return !tl_model_deforms(t->base) && !t->base->elements && t->settles > SOFT * largest_radius(t->base) &&
+           t->may_put_back;
+}
+
+/* Makes the copy anew, with joints so stiff that it is not soft. Where that cannot be, or does not rest, the first one
+ * stays. */
+static tl_status stiffen(tl_trials *t, tl_fall *fall)
+{
+    tl_trials stiff = *t;
+    tl_fall loose = {.ids = NULL};
+    bool rests = false;
+    for (double of = t->settles; of > SOFT * largest_radius(t->base) && stiff.stiffness < STIFFEST; of /= STIFFER)
+        stiff.stiffness *= STIFFER;
+    tl_status status = make_base(&stiff, &loose, &rests);
+    if (status == TL_E_ARGUMENT) /* a law has no stiffness that may be higher */
+        status = TL_OK;
+    tl_model *other = rests ? t->base : stiff.base;
+    t->cycles = stiff.cycles;
+    if (rests) {
+        *t = stiff;
+        tl_fall_free(fall);
+        *fall = loose;
+    } else
+        tl_fall_free(&loose);
+    if (other)
+        tl_model_destroy(other);
     return status;
 }
 
@@ -687,29 +594,14 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
     *fall = (tl_fall){.ids = NULL};
     tl_status status = TL_OPTIONS_READ(tl_safety, given, &t->options, &m->error);
     if (status == TL_OK)
-        status = tl_model_may_set(m, "find a factor of safety");
-    if (status == TL_OK)
-        status = check_options(t);
-    if (status == TL_OK)
-        status = choose_laws(t);
-    if (status == TL_OK)
-        status = check_bodies(t);
-    if (status == TL_OK)
-        status = check_processes(t);
+        status = tl_asked_check(m, what, &t->options, &t->which);
     atomic_store(&m->interrupted, false);
+    bool rests = false;
     if (status == TL_OK)
-        status = copy_of(t, m, &t->base);
-    if (status == TL_OK)
-        status = check_rest(t, t->base);
-    if (status == TL_OK)
-        status = weaken(t, t->base, RAISED);
-    if (status != TL_OK)
-        return status;
-    tl_safety_trial trial;
-    t->window = 100;
-    t->settles = largest_radius(t->base) / SUSPECT; /* before the first rest only the size of bodies says what is far */
-    status = settle(t, t->base, true, &trial, fall);
-    return status == TL_OK && trial.holds ? measure(t, trial.cycles) : status;
+        status = make_base(t, fall, &rests);
+    if (status == TL_OK && rests && is_soft(t))
+        status = stiffen(t, fall);
+    return status;
 }
 
 /* Makes a trial on a copy. */
@@ -720,39 +612,67 @@ static tl_status make_one(tl_trials *t, double factor, tl_safety_trial *trial, t
     if (status == TL_OK)
         status = weaken(t, copy, factor);
     if (status == TL_OK)
-        status = settle(t, copy, false, trial, fall);
+        status = settle(t, copy, true, trial, fall);
     if (copy)
         tl_model_destroy(copy);
     return status;
 }
 
-/* Trials with stiffer joints, which have come to rest as the first copy has; *usable: they did. */
-static tl_status make_stiffer(tl_trials *t, bool *usable)
+/* Takes out of a copy of the model what is no longer in the base, and holds what is held there. */
+static tl_status follow_base(const tl_trials *t, tl_model *copy)
 {
-    *usable = t->stiffer && t->stiffer->measured;
-    if (t->stiffer || t->stiffness * STIFFER > STIFFEST)
-        return TL_OK;
-    tl_trials *s = t->stiffer = malloc(sizeof *s);
-    if (!s)
+    const tl_blocks *blocks = &copy->blocks;
+    tl_id *gone = malloc((blocks->table.rows + 1) * sizeof *gone),
+          *held = malloc((blocks->table.rows + 1) * sizeof *held);
+    size_t goes = 0, holds = 0;
+    if (!gone || !held) {
+        free(gone);
+        free(held);
         return tl_fail_memory(&t->asked->error);
-    *s = (tl_trials){.what = t->what,
-                     .asked = t->asked,
-                     .options = t->options,
-                     .which = t->which,
-                     .stiffness = STIFFER * t->stiffness,
-                     .settles = t->settles,
-                     .window = t->window};
-    tl_safety_trial trial;
-    tl_fall fall = {.ids = NULL};
-    tl_status status = copy_of(s, t->base, &s->base);
+    }
+    for (uint32_t row = 0; row < blocks->table.rows; row++) {
+        const uint32_t in_base = tl_block_row_quiet(t->base, blocks->id[row]);
+        if (in_base == TL_NO_ROW)
+            gone[goes++] = blocks->id[row];
+        else if (tl_body_is_free(copy, blocks->body[row]) && !tl_body_is_free(t->base, t->base->blocks.body[in_base]))
+            held[holds++] = blocks->id[row];
+    }
+    tl_status status = goes > 0 ? tl_blocks_delete(copy, gone, goes) : TL_OK;
+    if (status == TL_OK && holds > 0)
+        status = tl_blocks_fix(copy, held, holds, TL_FIX_ALL);
+    free(gone);
+    free(held);
+    return told(t, copy, status);
+}
+
+/* Makes a trial with stiffer joints on a copy of the model as it was given: one of the base has settled on soft joints,
+ * and what fits its blocks is off by that. `s` has their stiffness. *made: the copy came to rest at first. */
+static tl_status make_stiffer(const tl_trials *t, tl_trials *s, double factor, tl_safety_trial *trial, tl_fall *fall,
+                              bool *made)
+{
+    tl_fall loose = {.ids = NULL};
+    s->base = NULL;
+    s->cycles = 0;
+    s->measured = false;
+    tl_status status = copy_of(s, s->asked, &s->base);
     if (status == TL_OK)
-        status = weaken(s, s->base, RAISED);
+        status = follow_base(t, s->base);
+    if (status == TL_OK && t->may_put_back)
+        tl_put_back(s->base);
     if (status == TL_OK)
-        status = settle(s, s->base, true, &trial, &fall);
-    if (status == TL_OK && trial.holds)
-        status = measure(s, trial.cycles);
-    *usable = s->measured;
-    tl_fall_free(&fall);
+        status = weaken(s, s->base, TL_LEAST_FACTOR);
+    if (status == TL_OK)
+        status = settle(s, s->base, false, trial, &loose);
+    tl_fall_free(&loose);
+    *made = status == TL_OK && trial->holds;
+    if (*made)
+        status = measure(s, trial->cycles);
+    if (*made && status == TL_OK)
+        status = weaken(s, s->base, factor);
+    if (*made && status == TL_OK)
+        status = settle(s, s->base, true, trial, fall);
+    if (s->base)
+        tl_model_destroy(s->base);
     return status;
 }
 
@@ -760,27 +680,31 @@ static tl_status make_stiffer(tl_trials *t, bool *usable)
  * they are soft. */
 static tl_status confirm(tl_trials *t, tl_safety_trial *trial, tl_fall *fall)
 {
-    const double factor = trial->factor;
+    const tl_safety_trial rests = *trial;
     int64_t cycles = trial->cycles;
     double moved = fall->moved, before = 0;
     tl_status status = TL_OK;
-    for (tl_trials *at = t; trial->holds && moved > fmax(SLIPS, GROWN * before);) {
-        bool usable;
-        before = moved;
-        status = make_stiffer(at, &usable);
-        at = at->stiffer;
-        if (status != TL_OK || !usable)
-            break;
+    for (tl_trials s = *t;
+         trial->holds && moved > fmax(SLIPS, GROWN * before) && s.stiffness * STIFFER <= STIFFEST * t->stiffness;) {
+        bool made;
         tl_fall_free(fall);
-        status = make_one(at, factor, trial, fall);
+        s.stiffness *= STIFFER;
+        before = moved;
+        status = make_stiffer(t, &s, rests.factor, trial, fall, &made);
+        moved = s.moved;
+        cycles += s.cycles;
+        t->cycles += s.cycles;
+        if (status == TL_E_ARGUMENT) /* a law has no stiffness that may be higher */
+            status = TL_OK;
         if (status != TL_OK)
             break;
-        moved = at->moved;
-        cycles += trial->cycles;
-        t->cycles += trial->cycles;
+        if (!made) { /* stiff joints say nothing */
+            *trial = rests;
+            break;
+        }
     }
     trial->cycles = cycles;
-    trial->factor = factor;
+    trial->factor = rests.factor;
     return status;
 }
 
@@ -837,7 +761,6 @@ void tl_trials_end(tl_trials *t)
     if (t->base)
         tl_model_destroy(t->base);
     forget_made(t);
-    end_stiffer(t);
     free(t->ahead);
     free(t->which);
     t->ahead = NULL;

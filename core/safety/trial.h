@@ -29,16 +29,16 @@ typedef struct tl_trials {
     const char *what; /* begins sentences */
     tl_model *asked;  /* stays as it is */
     tl_safety options;
-    uint8_t *which;            /* of the laws: whether strengths are divided */
-    tl_model *base;            /* a copy of the model that has come to rest with high strengths */
-    double stiffness;          /* of its joints, over that of the model */
-    struct tl_trials *stiffer; /* the same with stiffer joints, or NULL */
-    double moved;              /* how far a body had gone at the end of the last trial, over `settles` */
-    double settles;            /* how far its elastic joints settle, m */
-    bool measured;             /* whether that is known; else a guess by the size of blocks */
-    int64_t window;            /* steps between two looks at a trial */
-    int64_t cycles;            /* made so far, of all copies */
-    double began;              /* s, of the clock */
+    uint8_t *which;    /* of the laws: whether strengths are divided */
+    tl_model *base;    /* a copy of the model that has come to rest with high strengths */
+    double stiffness;  /* of its joints, over that of the model */
+    double moved;      /* how far a body had gone at the end of the last trial, over `settles` */
+    double settles;    /* how far its elastic joints settle, m */
+    bool measured;     /* whether that is known; else a guess by the size of blocks */
+    bool may_put_back; /* whether copies with stiffer joints begin as the model was cut */
+    int64_t window;    /* steps between two looks at a trial */
+    int64_t cycles;    /* made so far, of all copies */
+    double began;      /* s, of the clock */
     size_t undecided;
     bool confirms;         /* whether trials that rest are confirmed at once */
     tl_trial_ahead *ahead; /* [ahead_count], begun with `base` as it is */

@@ -471,6 +471,22 @@ function talus.help(topic) end
 ---@field active_length? number m, in [0.001, 1e+06]: Length that turns where a joint shears; without it, two diameters.
 ---@field spacing? number m, in [0.001, 1e+06], default 0.1: Of the nodes, at most.
 
+--- Shotcrete on outer faces of blocks: a shell that a bond holds.
+---@class (exact) talus.element.Liner
+---@field facing? talus.Vector default {0, 0, 0}: Outer faces that look this way are lined; without it, all.
+---@field within? number deg, in [0, 180], default 45: So far their normals may be from that.
+---@field rock? string Group of the blocks that are lined; without it, all.
+---@field faces? talus.Vector[] m: Points, one on each face that is lined; without it, all of those.
+---@field thickness number m, in (0, 10]: Of the liner.
+---@field young? number Pa, in [100000, 1e+13], default 2e+10: Young's modulus of the liner.
+---@field poisson? number in [0, 0.5), default 0.2: Poisson's ratio of the liner.
+---@field tension? number Pa, in [0, 1e+12], default 2000000: Tensile strength of the liner.
+---@field bond_stiffness? number Pa/m, in [1000, 1e+15], default 1e+10: Of the bond, across it.
+---@field bond_shear_stiffness? number Pa/m, in [1000, 1e+15]: Along it; without it, the same.
+---@field bond_strength? number Pa, in [0, 1e+12], default 500000: Tension at which the bond fails.
+---@field bond_shear_strength? number Pa, in [0, 1e+12]: Shear at which it fails; without it, the same.
+---@field spacing? number m, in [0.0001, 1e+06]: Length of the sides of triangles, at most; without it, that over which the bond bears.
+
 --- Outer faces of rigid blocks that let waves out: model:boundary.
 ---@class (exact) talus.element.Quiet
 ---@field faces string Numbers: block, face (from 0), area (m2), height (m) and density (kg/m3), of one face after the other.

@@ -1,6 +1,6 @@
 /* bolts.c - how long the update of a bolt of 30 nodes takes on one core. Run as
  *
- *     ./bootstrap bench bolts
+ *     ./bootstrap bench elements
  *
  * 1,000 bolts across a joint that opens and shears a little in each step: while all is elastic, and while grout slips and
  * steel yields. The target is 1.5 us a bolt and step, elastic, and 120 bytes of states a node. Processor time. */

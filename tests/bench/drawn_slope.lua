@@ -15,7 +15,7 @@ local SCATTER, DEVIATION = 200, 0.2 -- Fisher's concentration; deviation of spac
 local REACH = 45                    -- m, what a set's planes cover to be everywhere in the slope
 local DENSITY, GRAVITY, STIFFNESS = 2000, 10, 1e9 -- kg/m3, m/s2, Pa/m
 
-drawn.friction = { 38, 3 } -- degrees, mean and deviation of all joints
+drawn.friction = { 35, 3 } -- degrees, mean and deviation of all joints
 drawn.smallest = 1         -- m3: smaller blocks do not count
 
 local function at(plane, origin)
@@ -53,6 +53,13 @@ function drawn.build(draw)
             number = math.ceil(REACH / spacing), origin = { LENGTH / 2, WIDTH / 2, (TOE[3] + HEIGHT) / 2 } })
     end
     model:blocks { hidden = true }:show()
+    return model
+end
+
+-- The same between rock: what lies at the sides and the rear is held, so that only the face is free.
+function drawn.build_held(draw)
+    local model = drawn.build(draw)
+    model:boundary { xmax = "fixed", ymin = "fixed", ymax = "fixed", zmin = "fixed" }
     return model
 end
 

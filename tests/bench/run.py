@@ -4,8 +4,8 @@
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
 NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest realisations edits output terrain
-examples yade beside million cuts solids zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
-the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
+examples yade beside million cuts solids zones deformable elements); without names all run. --quick takes smaller models. --renew writes
+docs/performance/MACHINE.csv and the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
 A job is a program that prints rows of CSV after a line with the names of their columns (the first of which
@@ -247,8 +247,17 @@ def deformable(r):
     r.program("deformable", *(["quick"] if r.quick else []), env={"TALUS_PLUGIN_PATH": str(r.build / "plugins")})
 
 
+def elements(r):
+    """Bolts, quiet faces and water; only their lines of text."""
+    r.program("bolts")
+    r.script("quiet", f"n={20 if r.quick else 60}")
+    r.script("water", f"n={4 if r.quick else 5}")
+    r.script("flow", "10000" if r.quick else "100000")
+
+
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest,
-                                      realisations, edits, output, terrain, examples, yade, beside, million, cuts, solids, zones, deformable)}
+                                      realisations, edits, output, terrain, examples, yade, beside, million, cuts, solids, zones, deformable,
+                                      elements)}
 
 
 # ---------------------------------------------------------------------- figures

@@ -122,7 +122,7 @@ function random_bolts.build(one, form, threads)
     end
     model:joint("*", "coulomb", { kn = (one.kn or 1e9) / unit ^ 3, ks = 0.5 * (one.kn or 1e9) / unit ^ 3, friction = 20 })
     local bolts = {}
-    local made = model:element("bolt", bolts_of(one, form))
+    local made = #one.bolts > 0 and model:element("bolt", bolts_of(one, form)) or {}
     for k = 1, #made do
         bolts[k] = made[form.reversed and #made + 1 - k or k]
     end

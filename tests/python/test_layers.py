@@ -104,7 +104,7 @@ MAX_HEADER_LINES = 400
 SIDES = "core/contact/sides.h"
 SIDE_MODULES = {"contact", "force", "detect", "cycle", "query", "io"}
 POSES_OF_BODIES = {f"core/{file}.c" for file in (
-    "cycle/failing cycle/insitu cycle/limits cycle/meshes cycle/motion cycle/settle detect/broad io/scene io/vtk_contacts io/vtk_section query/touching query/views").split()}
+    "cycle/failing cycle/insitu cycle/limits cycle/meshes cycle/motion cycle/put_back cycle/settle detect/broad io/scene io/vtk_contacts io/vtk_section query/touching query/views").split()}
 # First folders of paths that exist on one machine only.
 MACHINE_FOLDERS = "data|home|media|mnt|opt|root|scratch|srv|tmp|var|work|Users"
 TEXT_SUFFIXES = {".c", ".h", ".lua", ".py", ".md", ".txt", ".json", ".sh", ".cmake", ""}

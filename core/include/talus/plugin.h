@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 15u
+#define TL_ABI_MINOR 16u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -605,6 +605,9 @@ typedef struct tl_solid_ops {
 
 /* Limit: nodes of one element. A worker takes so many at a time. */
 #define TL_ELEMENT_NODES 512
+/* Limit: since 1.16, nodes of one element whose kind has `memory`: it comes alone if there are more than
+ * TL_ELEMENT_NODES. */
+#define TL_ELEMENT_MANY 3072
 
 /* Flags of an element. The kind sets and clears them, but for the last one, which the host sets. */
 enum {
@@ -639,6 +642,7 @@ typedef struct tl_element_batch {
     double *stored;               /* in: of the last step; out: J that an element holds */
     double *lost;                 /* out, preset to 0: J turned to heat in this step */
     double *given;                /* out, preset to 0: J brought in from outside in this step */
+    void *const *memory;          /* since 1.16, of elements: what `memory` asked for; NULL: the kind has none */
 } tl_element_batch;
 
 /* A node to be. */
@@ -652,7 +656,7 @@ typedef struct tl_element_node {
 /* An element to be. */
 typedef struct tl_new_element {
     uint32_t size;
-    const tl_element_node *nodes; /* 1 to TL_ELEMENT_NODES */
+    const tl_element_node *nodes; /* 1 to TL_ELEMENT_NODES, or TL_ELEMENT_MANY */
     size_t count;
     const double *node_state; /* [count][states of a node]; NULL: their initial values */
     const double *state;      /* [states of an element]; NULL: their initial values */
@@ -765,6 +769,14 @@ typedef struct tl_element_ops {
     tl_status (*together)(const void *self, const tl_element_batch *batch, tl_report *report);
     /* [main] Since 1.15, may be NULL: 1. Steps between two calls of `together`; 0: none in steps. */
     uint32_t (*every)(const void *self);
+    /* [main] Since 1.16, may be NULL. Bytes of memory for each element, preset to 0; the batch is that of `stiffness`.
+     * `update` keeps there what takes long to find: what follows from `rest`, weight, parameters and states, as a
+     * factorised matrix does. The host sets it to 0 when elements, parameters or blocks change, and does not save it.
+     * So results must not depend on whether something is kept. Memory is aligned to 64 bytes. */
+    void (*memory)(const void *self, const tl_element_batch *batch, size_t *bytes);
+    /* Since 1.16: not 0: nodes are corners of triangles, three for each, counter-clockwise from outside. Pictures show
+     * the triangles. */
+    uint32_t triangles;
 } tl_element_ops;
 
 /* ---------------------------------------------------------------- descriptors ------------ */
