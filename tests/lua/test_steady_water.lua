@@ -66,3 +66,23 @@ for _ = 1, 12 do
     check.equal(before:state_hash(), hash)
     check.equal(after:state_hash(), hash)
 end
+
+-- A run ends at rest only with forces that are exact: they follow from where the block is.
+for _, stiffness in ipairs { 1e7, 1e8, 1e9 } do
+    for _, ratio in ipairs { 1e-3, 1e-5, 1e-7 } do
+        local rests = talus.model { gravity = { 0, 0, -10 } }
+        rests:generate("box", { { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = 2500 },
+            { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 } })
+        rests:blocks { id = 1 }:fix()
+        rests:joint("*", "coulomb", { kn = stiffness, ks = stiffness, friction = 30 })
+        rests:water("table", { level = 0.5, unit_weight = WEIGHT })
+        rests:damping "local"
+        rests:solve { ratio = ratio }
+        local force = 0
+        for _, node in ipairs(rests:elements()[1].nodes) do
+            force = force + (node.block.id == 2 and node.force[3] or 0)
+        end
+        local wrong = math.abs(force / WEIGHT - (0.5 - rests:blocks { id = 2 }[1].displacement[3])) / RADIUS
+        check.holds(wrong < 1.1e-6, ("kn %g, ratio %g: at rest as if it were %g radii off"):format(stiffness, ratio, wrong))
+    end
+end
