@@ -11,6 +11,7 @@
 #include "cycle/remarks.h"
 #include "cycle/rest.h"
 #include "cycle/settle.h"
+#include "element/steady.h"
 #include "model/options.h"
 #include "model/rows.h"
 
@@ -75,8 +76,8 @@ static bool call_back(tl_model *m, const tl_solve *s, int64_t done, tl_status *s
 
 static bool at_rest(tl_model *m, const progress *p)
 {
-    bool rests =
-        (!m->relaxing || tl_settle_bears_all(m)) && tl_at_rest(m, (tl_ratio_measure)p->solve->measure, p->solve->ratio);
+    const bool rests = (!m->relaxing || tl_settle_bears_all(m)) &&
+                       tl_at_rest(m, (tl_ratio_measure)p->solve->measure, p->solve->ratio) && tl_steady_is_exact(m);
     p->result->worst = worst_body(m); /* where forces balance, one that still moves */
     return rests;
 }

@@ -519,16 +519,19 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
     keep_extreme(&s->found[thread], found);
 }
 
-/* M_min / (2 K_max), with K_max over contacts and nodes of free bodies; no bound where there is none. */
+/* M_min / (2 K_max), with K_max over contacts and nodes of free bodies, and less by the strongest damper of a node; no
+ * bound where there is none. */
 static bound paper_rule(tl_model *m)
 {
     const struct tl_step_bounds *bounds = &m->cycle->step_bounds;
     row_search s = {.m = m};
+    double c;
     tl_row_value stiffest = row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
-    const double node = tl_model_has_elements(m) ? tl_elements_stiffest(m) : 0;
-    const double beta = tl_contact_beta(m), undamped = damped_rate((damped_by){beta, 0}, node / bounds->least_mass, 0);
-    const double least = beta > 0 ? 0.5 / undamped : bounds->least_mass / (2 * node);
-    if (node > 0 && !(stiffest.row != TL_NO_ROW && bounds->least_mass / (2 * stiffest.value) <= least))
+    const double node = tl_elements_stiffest(m, &c), beta = tl_contact_beta(m);
+    c = m->relaxing ? 0 : c;
+    const double damped = damped_rate((damped_by){beta, 0}, node / bounds->least_mass, c / bounds->least_mass);
+    const double least = beta > 0 || c > 0 ? 0.5 / damped : bounds->least_mass / (2 * node);
+    if (node + c > 0 && !(stiffest.row != TL_NO_ROW && bounds->least_mass / (2 * stiffest.value) <= least))
         return (bound){least, bounds->lightest, TL_NO_ROW, node, TL_NO_ROW};
     if (stiffest.row == TL_NO_ROW)
         return no_bound;

@@ -357,14 +357,17 @@ void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
     }
 }
 
-double tl_elements_stiffest(const tl_model *m)
+double tl_elements_stiffest(const tl_model *m, double *damping)
 {
     const struct tl_elements *e = m->elements;
     double most = 0;
+    *damping = 0;
     for (size_t row = 0; e && row < e->nodes.table.rows; row++) {
         const uint32_t body = e->nodes.body[row];
-        if (body != TL_NO_ROW && m->bodies.fixed[body] != TL_FIX_ALL)
-            most = fmax(most, e->nodes.k[row]);
+        if (body == TL_NO_ROW || m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        most = fmax(most, e->nodes.k[row]);
+        *damping = fmax(*damping, e->nodes.c[row]);
     }
     return most;
 }

@@ -19,8 +19,8 @@ void tl_elements_push(tl_model *m);
 void tl_elements_stiffen(tl_model *m, double *damping);
 /* How nodes hold a rigid body: stiffness and damping. */
 void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum);
-/* The largest stiffness of a node on a body that can move, N/m. */
-double tl_elements_stiffest(const tl_model *m);
+/* The largest stiffness, N/m, and damping, N s/m, of a node on a body that can move. */
+double tl_elements_stiffest(const tl_model *m, double *damping);
 /* What all elements hold, and have turned to heat and brought in during the step, J. */
 tl_energies tl_elements_energies(tl_model *m);
 

@@ -30,13 +30,12 @@
 
 /* ---------------------------------------------------------------- when ------------------- */
 
-/* Whether the first and last node of an element have gone apart. */
-static bool has_slid(const tl_model *m, size_t row)
+/* Whether the first and last node of an element, that have gone apart by `way`, have done so far enough. */
+static bool is_far(const tl_model *m, size_t row, tl_vec3 way)
 {
     const struct tl_elements *e = m->elements;
     const tl_node_table *n = &e->nodes;
     const uint32_t a = e->table.node_begin[row], b = a + e->table.node_count[row] - 1;
-    const tl_vec3 way = tl_v3_sub(tl_columns_get(n->u, b), tl_columns_get(n->u, a));
     double size = INFINITY;
     for (int k = 0; k < 2; k++) {
         const uint32_t block = tl_block_row_quiet(m, n->block[k ? b : a]);
@@ -45,17 +44,30 @@ static bool has_slid(const tl_model *m, size_t row)
     return tl_v3_norm2(way) > SLID * SLID * size * size;
 }
 
+/* Whether they had when they were asked for their forces, and still have. What has just been placed again has not: its
+ * nodes then have the motion of the last step, but lie where they were placed. `*calm` becomes false if they had. */
+static bool has_slid(const tl_model *m, size_t row, bool *calm)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_node_table *n = &e->nodes;
+    const uint32_t a = e->table.node_begin[row], b = a + e->table.node_count[row] - 1;
+    if (!is_far(m, row, tl_v3_sub(tl_columns_get(n->u, b), tl_columns_get(n->u, a))))
+        return false;
+    *calm = false;
+    return is_far(m, row, tl_v3_sub(tl_node_moved(m, b), tl_node_moved(m, a)));
+}
+
 static bool is_due(tl_model *m)
 {
     struct tl_elements *e = m->elements;
-    bool due = false;
+    bool due = false, calm = true;
     for (size_t k = 0; k < e->set_count && !due; k++)
         due = tl_element_ops_of(&e->set[k])->lays_again && e->set[k].structure != m->structure;
     if (due || m->cycles % LOOK_EVERY != 0 || e->looked == e->asked)
         return due;
-    e->looked = e->asked; /* places of nodes change only where they are asked for their forces */
     for (size_t row = 0; row < e->table.table.rows && !due; row++)
-        due = tl_element_ops_of(&e->set[e->table.set[row]])->lays_again && has_slid(m, row);
+        due = tl_element_ops_of(&e->set[e->table.set[row]])->lays_again && has_slid(m, row, &calm);
+    e->looked = calm ? e->asked : 0; /* their motions change only where they are asked for forces or placed */
     return due;
 }
 

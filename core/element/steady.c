@@ -2,9 +2,10 @@
  *
  * A kind says so (`steady`). Let F and M be the sums over the nodes of a rigid body, in its own frame. They turn with
  * it: at the rotation R they are R F and R M. All such elements are asked for their forces again when one of their
- * bodies has gone farther than FAR of its size. Every LOOK_EVERY steps, and in a relaxation, it is STEADY of it. So
- * forces at rest are exact, and what moves does not ask in every step. Their nodes then first get places and forces of
- * the last step. So what a kind books is the work of one step.
+ * bodies has gone farther than FAR of its size. Every LOOK_EVERY steps, and in a relaxation, it is STEADY of it. No
+ * model is at rest while a body has gone farther than that. So forces at rest are exact, and what moves does not ask in
+ * every step. Their nodes then first get places and forces of the last step. So what a kind books is the work of one
+ * step.
  *
  * The work of a step is the sum over the nodes of the mean force times the motion. From the pose u0, R0 to u1, R1 it is
  *
@@ -54,15 +55,29 @@ static double work_on(const tl_steady_table *s, uint32_t body, const tl_pose *no
     return 0.5 * (tl_v3_dot(f, tl_v3_sub(now->u, s->at[body])) + tl_v3_dot(s->moment[body], a));
 }
 
+/* Whether some body has gone farther than `way` of its size since its forces were asked for. */
+static bool has_gone(const tl_model *m, double way)
+{
+    const tl_steady_table *s = &m->elements->steady;
+    for (uint32_t body = 0; body < s->table.rows; body++)
+        if (has_some(m->elements, body) &&
+            (!s->held[body] || m->bodies.odometer[body] - s->odometer[body] > way * m->bodies.radius[body]))
+            return true;
+    return false;
+}
+
+bool tl_steady_is_exact(const tl_model *m)
+{
+    return !m->elements || !m->elements->any_steady || !has_gone(m, STEADY);
+}
+
 bool tl_steady_keeps(tl_model *m)
 {
     struct tl_elements *e = m->elements;
     tl_steady_table *s = &e->steady;
     const double way = m->relaxing || m->cycles % LOOK_EVERY == 0 ? STEADY : FAR;
-    for (uint32_t body = 0; body < s->table.rows; body++)
-        if (has_some(e, body) &&
-            (!s->held[body] || m->bodies.odometer[body] - s->odometer[body] > way * m->bodies.radius[body]))
-            return false;
+    if (has_gone(m, way))
+        return false;
     for (uint32_t body = 0; body < s->table.rows; body++) {
         const tl_pose *now = &m->bodies.pose[body];
         if (!has_some(e, body))

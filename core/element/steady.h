@@ -9,6 +9,8 @@
 bool tl_steady_fit(tl_model *m);
 /* Whether the forces of steady elements may be kept in this step: then their work since the last one is booked. */
 bool tl_steady_keeps(tl_model *m);
+/* Whether forces that are kept are as good as those of a model at rest are to be. */
+bool tl_steady_is_exact(const tl_model *m);
 /* Gives nodes of steady elements the places and forces that they had in the last step. */
 void tl_steady_bring(tl_model *m);
 /* Sums what steady elements do to bodies, after they were asked. */

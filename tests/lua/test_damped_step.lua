@@ -130,3 +130,14 @@ local m = row(1, { zones = true })
 m:cycle(20)
 m:damping("dashpot", { ratio = 1, frequency = 1 / (math.pi * 1e-3) })
 check.near(m.dt / row(1, { zones = true, beta = 1e-3 }).dt, 1, 1e-6)
+
+-- By the paper's rule the strongest damper of a node counts as well: a buffer of a light block.
+local buffered = talus.model { gravity = { 0, 0, 0 } }
+buffered:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+buffered:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
+buffered:timestep { rule = "paper", fraction = 1 }
+buffered:element("spring", { from = { 0.5, 0.5, 0.5 }, to = { 0.5, 0.5, 3 }, stiffness = 1e8, damping = 1e8 })
+buffered:blocks():set { velocity = { 0, 0, 1e-3 } }
+local c, k = 1e8 / 2500, 2 * 1e8 / 2500
+check.near(buffered.dt * (c + math.sqrt(c * c + k)) / 2, 1, 1e-12)
+check.holds(growth(buffered, STEPS) <= 1, "a buffer by the paper's rule")

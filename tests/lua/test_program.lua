@@ -98,7 +98,7 @@ check.equal(run("--quiet -e 'x = 1'"), 0)
 -- older_minor, blank_screen, halving and half_marked never.
 local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
 if bad then
-    local reasons = { wrong_major = "ABI 2.15", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
+    local reasons = { wrong_major = "ABI 2.16", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
     local loads = { half_way = true, single_blocks = true, failing = true, older_minor = true, liar = true, crasher = true,
         mumbles = true, unfit = true, unfit_solid = true, blank_screen = true, halving = true, half_marked = true }
     local refusals = 0

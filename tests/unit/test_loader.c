@@ -103,13 +103,13 @@ TEST(a_search_for_nothing_is_no_error)
 
 TEST(broken_plugins_are_refused_with_the_reason)
 {
-    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.15, this Talus has 1.15");
-    refused(bad_folder, "later_major", "it was built for plugin ABI 3.15, this Talus has 1.15: build it anew");
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.16, this Talus has 1.16");
+    refused(bad_folder, "later_major", "it was built for plugin ABI 3.16, this Talus has 1.16: build it anew");
     refused(bad_folder, "later_minor",
-            "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.15");
+            "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.16");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
-    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.15)");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.16)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
     refused(bad_folder, "name_clash", "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
     refused(bad_folder, "bad_default",

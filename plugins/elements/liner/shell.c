@@ -119,7 +119,7 @@ static void lay(layout *l, const tl_element_batch *b, uint32_t e, const double *
     l->nodes = 1;
     for (uint32_t k = 0; k < l->corners; k++) {
         const double given = number[b->start[e] + k]; /* of a file, it may be anything */
-        l->node[k] = given >= 0 && given < l->corners ? (uint16_t)given : 0;
+        l->node[k] = (uint16_t)(given >= 0 && given < l->corners ? given : 0);
         l->nodes = l->node[k] >= l->nodes ? l->node[k] + 1u : l->nodes;
     }
     for (uint32_t k = 0; k < l->corners; k++) {
