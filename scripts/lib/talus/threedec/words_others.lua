@@ -22,11 +22,17 @@ return function(row)
     row("plot|print|program log|program log-file|program list|list|model list|model display|block list|program playback|" ..
         "program undo|program pause|program system|program load|pause|log|log-file|view|movie|fish list|block vtk|export|block export",
         { lacks = "pictures and lists: model:write_vtk, model:write_html, talus.report, talus.plot" })
-    row("structure|sel|cable|beam|liner|shell|block structure", { lacks = "Talus has no support elements yet" })
-    row("block water|block fluid|water|fluid|block zone fluid|block thermal|thermal|model fluid|model thermal|block flow|flow",
-        { lacks = "Talus has no water and no heat" })
-    row("dfn|fracture|geometry|data|block import|block cells|block densify|block fragment|block fill|block makewall|" ..
-        "block joint-plane|zone|python|ffield|quiet|free-field|model python|python-reset-state|block remove|model undo", { lacks = "no counterpart" })
-    row("block analyze-stability|block relax|block trace|block merge-start|block to-flac3d|block to-pfc|block to-udec|" ..
-        "block dynamic|block contact use-actual|block update|fblock|feblock", { lacks = "no counterpart" })
+    row("structure|sel|cable|beam|liner|shell|block structure",
+        { lacks = "support is placed by model:element, as \"bolt\", \"anchor\" or \"liner\"" })
+    row("block water|block fluid|water|fluid|block zone fluid|model fluid|block flow|flow",
+        { lacks = "water in joints is set by model:water: \"table\", \"uniform\", \"field\" or \"flow\"" })
+    row("block thermal|thermal|model thermal", { lacks = "Talus has no heat" })
+    row("dfn|fracture", { lacks = "fractures are cut by generate{\"dfn\"}" })
+    row("quiet|free-field|block dynamic", { lacks = "model:boundary has quiet sides and free fields, talus.record records" })
+    row("model factor-of-safety", { lacks = "factors are found by model:factor_of_safety{} and model:safety_map{}" })
+    row("block analyze-stability", { lacks = "blocks that can move are found by model:keyblocks{}" })
+    row("geometry|data|block import|block cells|block densify|block fragment|block fill|block makewall|block joint-plane|" ..
+        "zone|python|ffield|model python|python-reset-state|block remove|model undo", { lacks = "no counterpart" })
+    row("block relax|block trace|block merge-start|block to-flac3d|block to-pfc|block to-udec|" ..
+        "block contact use-actual|block update|fblock|feblock", { lacks = "no counterpart" })
 end
