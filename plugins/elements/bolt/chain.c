@@ -97,13 +97,21 @@ static inline double size(double x)
     return x < 0 ? -x : x;
 }
 
+/* Largest values in lanes. clang does not do that, and would warn. */
+#ifdef __clang__
+#define LARGEST(...)
+#else
+#define PRAGMA(text) _Pragma(#text)
+#define LARGEST(...) PRAGMA(omp simd reduction(max : __VA_ARGS__))
+#endif
+
 /* Fills `off` but for the plate and the pull at node 0. */
 TL_VECTORIZED static sizes balance(chain *c)
 {
     const uint32_t last = c->count - 1;
     double off = 0, force = 0, stiff = 0, moved = 0;
     c->off[0] = (last > 0 ? c->tension[0] : 0) + (-c->plate - c->pull) - c->grout[0];
-#pragma omp simd reduction(max : force, stiff)
+    LARGEST(force, stiff)
     for (uint32_t k = 0; k < last; k++) {
         force = larger(force, size(c->tension[k]));
         stiff = larger(stiff, c->stiff[k]);
@@ -113,7 +121,7 @@ TL_VECTORIZED static sizes balance(chain *c)
         c->off[k] = c->tension[k] - c->tension[k - 1] - c->grout[k];
     if (last > 0)
         c->off[last] = -c->tension[last - 1] - c->grout[last];
-#pragma omp simd reduction(max : off, force, stiff, moved)
+    LARGEST(off, force, stiff, moved)
     for (uint32_t k = 0; k <= last; k++) {
         off = larger(off, size(c->off[k]));
         force = larger(force, size(c->grout[k]));

@@ -20,8 +20,11 @@
 /* Constant: of the largest overload, the part from which on others fail with it. The matrix is factorised after each
  * such round. */
 #define TOGETHER 0.8
-/* Limit: rounds in which corners begin or end to press, in one step. */
-#define TOUCHES 40
+/* Cost only: rounds in which all corners that are wrong begin or end to press at once though they become no fewer. */
+#define PATIENCE 3
+/* Limit: times that one corner begins to press by itself before something fails. Where a part of the shell is loose,
+ * where it lies is of no account, and nothing tells whether it presses. */
+#define PRESSES 2
 /* Limit: triangles of one call. */
 #define MOST_TRIANGLES 1e6
 /* Tolerance: distance beyond a side of a face, over the length of one, that is rounding. Test:
@@ -257,7 +260,7 @@ typedef struct patch {
     const tl_element_batch *b;
     uint32_t e, first, corners;
     shell *s;
-    unsigned char held[TL_ELEMENT_MANY], torn[TL_ELEMENT_MANY / 3];
+    unsigned char held[TL_ELEMENT_MANY], now[TL_ELEMENT_MANY], torn[TL_ELEMENT_MANY / 3];
 } patch;
 
 /* Forces in a triangle: principal values, and the largest tensile stress. */
@@ -330,20 +333,61 @@ static bool fail_worst(patch *x)
     return true;
 }
 
-/* Lets debonded corners press where shell and rock have met, and go where they part. Whether any does. */
-static bool touch(patch *x)
+/* Rounds in which corners begin or end to press. */
+typedef struct rounds {
+    uint32_t fewest; /* corners that were wrong in a round */
+    int patience;
+    unsigned char presses[TL_ELEMENT_MANY]; /* how often each has begun to press by itself */
+} rounds;
+
+static void begin_rounds(rounds *r)
 {
-    bool any = false;
+    r->fewest = UINT32_MAX;
+    r->patience = PATIENCE;
+    memset(r->presses, 0, sizeof r->presses);
+}
+
+/* How a corner is to be held, by the tension between shell and rock now. */
+static unsigned char held_now(const patch *x, uint32_t corner, double *tension)
+{
+    double shear;
+    *tension = 0;
+    if (x->held[corner] == SHELL_BONDED || x->b->weight[x->first + corner] == 0)
+        return x->held[corner];
+    shell_bond(x->s, &x->of, corner, tension, &shear);
+    return *tension < 0 ? SHELL_PRESSED : SHELL_FREE;
+}
+
+/* Lets debonded corners press where shell and rock have met, and go where they part. Whether any does. All that are
+ * wrong do so at once. Where these do not become fewer for long, only the one that is most so does, until they do
+ * (Judice and Pires 1994). */
+static bool touch(patch *x, rounds *r)
+{
+    uint32_t wrong = 0, worst = UINT32_MAX;
+    double most = 0;
     for (uint32_t c = 0; c < x->corners; c++) {
-        double tension, shear;
-        if (x->held[c] == SHELL_BONDED || x->b->weight[x->first + c] == 0)
+        double tension;
+        x->now[c] = held_now(x, c, &tension);
+        if (x->now[c] == x->held[c])
             continue;
-        shell_bond(x->s, &x->of, c, &tension, &shear);
-        const unsigned char now = tension < 0 ? SHELL_PRESSED : SHELL_FREE;
-        any = any || now != x->held[c];
-        x->held[c] = now;
+        wrong++;
+        if (fabs(tension) > most && (x->now[c] == SHELL_FREE || r->presses[c] < PRESSES)) {
+            most = fabs(tension);
+            worst = c;
+        }
     }
-    return any;
+    const bool fewer = wrong < r->fewest;
+    r->fewest = fewer ? wrong : r->fewest;
+    r->patience = fewer ? PATIENCE : r->patience - (r->patience > 0);
+    if (wrong == 0 || (r->patience == 0 && worst == UINT32_MAX))
+        return false;
+    if (r->patience > 0) {
+        memcpy(x->held, x->now, x->corners);
+        return true;
+    }
+    x->held[worst] = x->now[worst];
+    r->presses[worst] = (unsigned char)(r->presses[worst] + (x->now[worst] == SHELL_PRESSED));
+    return true;
 }
 
 /* ---------------------------------------------------------------- acting ----------------- */
@@ -368,19 +412,21 @@ static bool recall(patch *x)
     return lost;
 }
 
-/* Finds the balance. Whether something has failed. */
+/* Finds the balance, and the energy that is stored. Whether something has failed. */
 static bool settle(patch *x, double *energy)
 {
-    bool failed = false, again = true;
-    for (int touches = 0; again;) {
+    rounds r;
+    bool failed = false, again;
+    begin_rounds(&r);
+    do {
         shell_hold(x->s, x->b, x->e, &x->of, x->held, x->torn);
         *energy = shell_solve(x->s, x->b, x->e, &x->of);
-        again = touches++ < TOUCHES && touch(x);
+        again = touch(x, &r);
         if (!again && fail_worst(x)) {
             failed = again = true;
-            touches = 0;
+            begin_rounds(&r);
         }
-    }
+    } while (again);
     return failed;
 }
 

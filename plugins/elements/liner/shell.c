@@ -371,7 +371,7 @@ static void follow(shell *s, const tl_element_batch *b, uint32_t e)
 {
     const uint32_t first = b->start[e];
     for (uint32_t k = 0; k < s->nodes; k++)
-        s->of[k].shift = s->of[k].moment = tl_v3(0, 0, 0);
+        s->of[k].shift = s->of[k].net = s->of[k].moment = tl_v3(0, 0, 0);
     for (uint32_t c = 0; c < s->corners; c++) {
         shell_part *p = &s->of[s->part[s->node[c]]];
         if (s->counts[c / 3])
@@ -447,6 +447,7 @@ double shell_solve(shell *s, const tl_element_batch *b, uint32_t e, const shell_
         s->force[c] = spring(k, b->weight[first + c], s->facet[c / 3].normal, apart);
         energy += 0.5 * tl_v3_dot(s->force[c], s->d[c]);
         const tl_vec3 at = tl_v3_add(tl_v3_sub(column(b->rest, first + c), p->middle), s->d[c]);
+        p->net = tl_v3_add(p->net, s->force[c]);
         p->moment = tl_v3_add(p->moment, tl_v3_cross(at, s->force[c]));
     }
     return energy;
@@ -492,6 +493,7 @@ void shell_push(const shell *s, const tl_element_batch *b, uint32_t e)
         tl_vec3 f = s->force[c];
         if (s->counts[c / 3]) {
             const tl_vec3 rest = tl_v3_sub(column(b->rest, first + c), p->middle);
+            f = tl_v3_madd(f, -b->weight[first + c] / p->weight, p->net);
             f = tl_v3_madd(f, -b->weight[first + c], tl_v3_cross(p->spread, rest));
         }
         f = p->weight > 0 ? tl_v3_neg(tl_m3_mul(&p->turn, f)) : tl_v3(0, 0, 0);

@@ -22,8 +22,8 @@ typedef struct shell_material {
 /* Facets that hang together, from the place where they were installed on: turned by `turn` about `middle`, which moved
  * by `shift`. */
 typedef struct shell_part {
-    double weight; /* m2 of the facets that tell its motion; 0: nothing holds it */
-    tl_vec3 middle, shift, moment, spread;
+    double weight;                              /* m2 of the facets that tell its motion; 0: nothing holds it */
+    tl_vec3 middle, shift, net, moment, spread; /* net: of forces, what rounding has left */
     tl_mat3 sum, turn;
 } shell_part;
 
