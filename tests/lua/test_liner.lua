@@ -170,7 +170,7 @@ end
 
 -- It falls and turns: cracks and bonds that fail make no energy, on any number of threads.
 local function fall(threads, part)
-    local m, e = keyblock(-10, threads, 0.2)
+    local m, e = keyblock(-10, threads, 0.3)
     e:set { bond_strength = 1e6, tension = 1e6 }
     local falls = m:blocks { fixed = false }
     falls:set { velocity = { 0, 0, -0.2 }, angular_velocity = { 0.5, 1, 0 } }
