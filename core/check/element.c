@@ -327,23 +327,15 @@ static void turn_round(const state_of *from, state_of *to)
 static tl_status call_together(trial *t, state_of *s)
 {
     double *state[STATES], *whole[STATES], sum = 0;
-    for (int n = 0; n < STATES; n++) {
-        state[n] = s->state[n];
-        whole[n] = s->whole[n];
-    }
     tl_report report = {.size = sizeof report};
-    const tl_element_batch b = {.size = sizeof b,
-                                .count = s->count,
-                                .dt = t->dt,
-                                .time = t->time,
-                                .start = s->start,
-                                .rest = {s->rest[0], s->rest[1], s->rest[2]},
-                                .u = {s->u[0], s->u[1], s->u[2]},
-                                .normal = {s->normal[0], s->normal[1], s->normal[2]},
-                                .weight = s->weight,
-                                .state = state,
-                                .element_state = whole,
-                                .flags = s->flags};
+    tl_element_batch b = all_of(s, state, whole);
+    b.dt = t->dt;
+    b.time = t->time;
+    for (int k = 0; k < 3; k++) {
+        b.du[k] = b.v[k] = NULL;
+        b.force[k] = NULL;
+    }
+    b.stored = b.lost = b.given = NULL;
     tl_enter(t->c->kind, "together");
     const tl_status status = t->ops->together(t->self, &b, &report);
     tl_leave();

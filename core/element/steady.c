@@ -23,7 +23,7 @@
 #define STEADY 1e-6
 /* Tolerance: the same in the steps between. Test: lua/test_steady_water. */
 #define FAR 1e-4
-/* Cost only: steps between. */
+/* Constant: steps from one look by STEADY to the next. So long may pressures be off by FAR. */
 #define LOOK_EVERY 64
 
 bool tl_steady_fit(tl_model *m)

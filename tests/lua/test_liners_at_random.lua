@@ -8,7 +8,7 @@ local rock = require "random_bolts"
 
 local MODELS, STEPS = check.cases(120), 40
 local SUMS = 1e-11   -- of forces over their sizes: rounding of a solution
-local ENERGY = 1e-3  -- error of the work on a liner over all that has been done
+local ENERGY = 1e-5  -- error of the work on a liner over all that has been done
 local LITTLE = 1e-6  -- J, of liners that do nothing but for rounding
 local SAME = 1e-7    -- m, of motion
 
