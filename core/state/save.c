@@ -12,6 +12,7 @@
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "state/restore.h"
 #include "zone/walk.h"
 
 #include <stdio.h>
@@ -147,5 +148,24 @@ tl_status tl_model_save(tl_model *m, const char *path)
     tl_signals_hold(&before, false);
     status = save_under(m, path);
     tl_signals_release(&before);
+    return status;
+}
+
+tl_status tl_model_bytes(tl_model *m, unsigned char **bytes, size_t *length)
+{
+    tl_archive_writer w;
+    char *made;
+    *bytes = NULL;
+    tl_status status = prepare(m);
+    if (status == TL_OK)
+        status = tl_archive_begin_in_memory(&w, &made, length, &m->error);
+    if (status != TL_OK)
+        return status;
+    save_all(&w, m);
+    status = tl_archive_end(&w, &m->error);
+    if (status == TL_OK)
+        *bytes = (unsigned char *)made;
+    else
+        free(made);
     return status;
 }
