@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "model/model.h"
-#include "state/restore.h"
+#include "state/save.h"
 
 #include <limits.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* bracket.c - which factor of a grid a search tries next.
  *
  * A bracket is widened, twice as far each time, until one end holds and the other fails. Then it is halved until these
- * are neighbours. Where a trial begins with the last one that holds, a place that has failed from farther below is then
- * tried once more from its neighbour. */
+ * are neighbours. Trials that begin with the last one that holds may fail from far below, and hold from their
+ * neighbour: the one at the upper end is then made once more from there. */
 #include "safety/bracket.h"
 
 int64_t tl_bracket_next(tl_bracket *b)

@@ -1,4 +1,4 @@
-/* restore.h - a model as an archive in memory, and back. */
+/* restore.h - a model from an archive in memory. */
 #ifndef TL_STATE_RESTORE_H
 #define TL_STATE_RESTORE_H
 
@@ -6,9 +6,7 @@
 #include "model/model.h"
 #include "state/archive.h"
 
-/* What a saved file of a model would hold: *bytes, to be freed. */
-tl_status tl_model_bytes(tl_model *m, unsigned char **bytes, size_t *length);
-/* Makes a model of such bytes, which it frees: *bytes becomes NULL. */
+/* Makes a model of the bytes of a saved one (state/save.h), which it frees: *bytes becomes NULL. */
 tl_status tl_model_of_bytes(unsigned char **bytes, size_t length, tl_model **model, tl_error *error);
 tl_status tl_model_restore_archive(const tl_archive *archive, int64_t threads, tl_drive_again_fn again, void *user,
                                    tl_model **model, tl_error *error);

@@ -1,5 +1,7 @@
-/* save.c - a model into a file: all entries of its modules by their names, and what has owners of its own. Nothing in
- * the model changes by it, so that it makes no difference to a run when it is saved. */
+/* save.c - a model into a file, or into bytes: all entries of its modules by their names, and what has owners of its
+ * own. Nothing in the model changes by it, so that it makes no difference to a run when it is saved. */
+#include "state/save.h"
+
 #include "base/entries.h"
 #include "base/signals.h"
 #include "contact/store.h"
@@ -12,7 +14,6 @@
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
-#include "state/restore.h"
 #include "zone/walk.h"
 
 #include <stdio.h>
