@@ -2,8 +2,8 @@
  *
  * From one failure to the next the largest factor of the grid that holds is looked for by steps that double, and then
  * halve: a trial that holds holds at any lower factor. What fails at the least factor that does gets that factor, and
- * is deleted, or held where it was. The rest comes to rest again with high strengths, and the same factor is tried once
- * more: what then fails was held by what has gone. */
+ * is deleted, or held where it was, in the last trial that holds. The rest comes to rest again with high strengths, and
+ * the same factor is tried once more: what then fails was held by what has gone. */
 #include "base/clock.h"
 #include "base/error.h"
 #include "cycle/meshes.h"
@@ -74,7 +74,7 @@ static tl_status note(mapping *p, double factor, const tl_fall *fall)
  * false: nothing is free any more. */
 static tl_status take_out(mapping *p, double factor, tl_fall *fall, bool *left)
 {
-    tl_model *base = p->trials.base;
+    tl_model *base = tl_trials_go_on(&p->trials);
     tl_status status = TL_OK;
     *left = true;
     while (status == TL_OK && fall->count > 0 && *left) {

@@ -512,13 +512,26 @@ static void begin_anew(tl_trials *t)
     t->small_count = 0;
 }
 
+tl_model *tl_trials_go_on(tl_trials *t)
+{
+    forget_made(t);
+    if (t->from) {
+        tl_model_destroy(t->base);
+        t->base = t->from;
+        t->from = NULL;
+        t->small_count = 0;
+    }
+    return t->base;
+}
+
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
-    begin_anew(t);
-    tl_status status = settle(t, t->base, false, &trial, fall);
+    tl_status status = weaken(t, t->base, TL_LEAST_FACTOR);
+    if (status == TL_OK)
+        status = settle(t, t->base, false, &trial, fall);
     if (status == TL_OK && trial.holds)
-        status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
+        status = measure(t, 2 * t->window);
     return status;
 }
 

@@ -54,7 +54,10 @@ void tl_trial_ahead_free(tl_trial_ahead *made);
 /* Checks what is asked and how the model is, and makes the copy. TL_OK, and fall->count > 0: it does not come to rest
  * even with high strengths; the copy then has not. Small blocks that do not are deleted in the copy. */
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall);
-/* Brings the copy to rest again, after blocks of it have been deleted or held. */
+/* Makes the last trial that rests the base, where there is one, and gives the base: blocks of it may then be deleted or
+ * held. */
+tl_model *tl_trials_go_on(tl_trials *t);
+/* Brings the base to rest again, with high strengths. */
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall);
 /* Whether a trial begins with the last one that rests. In a model with zones each begins with the base. */
 bool tl_trials_by_steps(const tl_trials *t);
