@@ -2,9 +2,9 @@
  *
  * Between a face of A and one of C, a few centimetres apart, may lie the tip of a wedge or a thin slab B. Then A faces
  * B and B faces C. A and C face each other only beside B. So two polygons on one wall are compared: that with the
- * smaller opening keeps the common area, if its other block is as thin as the difference. Blocks side by side that press into
- * each other have a common area as well, but are thicker. All is seen along the mean normal of the farther polygon.
- * Openings are linear over a polygon, so they are compared at the centroid of the common area. */
+ * smaller opening keeps the common area, if its other block is as thin as the difference. Blocks side by side that
+ * press into each other have a common area as well, but are thicker. All is seen along the mean normal of the farther
+ * polygon. Openings are linear over a polygon, so they are compared at the centroid of the common area. */
 #include "element/near_walls.h"
 
 #include "base/table.h"

@@ -9,8 +9,9 @@
  * Test: lua/test_water. */
 #define TL_WALL_NO_AREA 1e-9
 
-/* Tolerance: area that is no wall, for rock lies before it or in its place, over the square of its block's size. Less than that stays a wall: blocks side by side press into each other by less than the way after which polygons are
- * found again. Test: lua/test_drawdown, lua/test_water_between. */
+/* Tolerance: area that is no wall, for rock lies before it or in its place, over the square of its block's size. Less
+ * than that stays a wall: blocks side by side press into each other by less than the way after which polygons are found
+ * again. Test: lua/test_drawdown, lua/test_water_between. */
 #define TL_WALL_LEAST_HIDDEN 1e-3
 
 /* A flat wall of a block, from the model's origin, counter-clockwise from outside. */
