@@ -269,7 +269,7 @@ static tl_status find_pyramid(work *w, size_t first, bool *empty)
 /* ---------------------------------------------------------------- mode ------------------- */
 
 /* Begins a way to slide; what was found before may be less safe. */
-static tl_keyblock other_way(const tl_keyblock *block, tl_keyblock_mode mode)
+static tl_keyblock other_way(const tl_keyblock *block, int32_t mode)
 {
     tl_keyblock way = *block;
     way.mode = mode;
