@@ -190,6 +190,8 @@ do
         { { observed = { safety = 2 }, build = function() end }, "build gave nil, not a model" },
         { { observed = { safety = 2 }, unknown = { x = { 3, 3 } } }, "from = 3 must be below to = 3" },
         { { observed = { safety = 2 }, unknown = 3 }, "unknown must be a table" },
+        { { observed = { safety = 2 }, unknown = { x = { 0, 10, form = 1 } } }, "unknown parameter 'form'; did you mean 'from'?" },
+        { { observed = { safety = 2 }, unknown = { x = { 0, 10, 20 } } }, "unknown parameter '3' (known: 1, 2, from, to)" },
         { { observed = { safety = 2 }, measure = 3 }, "measure must be a function" },
         { { observed = { safety = 2 }, tolerence = 3 }, "unknown parameter 'tolerence'; did you mean 'tolerance'?" },
     } do

@@ -379,6 +379,7 @@ with(function(draw)
         { function() draw.correlated({ "e", "f", "g" }, { { 0, 1 }, { 0, 1 }, { 0, 1 } },
             { { 1, 0.9, -0.9 }, { 0.9, 1, 0.9 }, { -0.9, 0.9, 1 } }) end, "the correlation matrix is none" },
         { function() draw.correlated({ "e" }, { { 0, 1 } }, 1) end, "give two or more" },
+        { function() draw.correlated({ "e", "f" }, { { 0, 1, mim = 0 }, { 0, 1 } }, 0) end, "unknown parameter 'mim'; did you mean 'min'?" },
     } do
         check.raises(case[1], case[2])
     end
@@ -478,6 +479,11 @@ do
     local histogram = set:histogram("v", 3)
     check.near(histogram.edges, { 1, 4, 7, 10 }, 0)
     check.near(histogram.counts, { 3, 0, 1 }, 0)
+    local wide = run { number = 3, measure = function(_, draw)
+        return { i = ({ math.mininteger, 0, math.maxinteger })[draw.row] }
+    end }
+    check.near(wide:histogram("i", 2).edges, { -2.0 ^ 63, 0, 2.0 ^ 63 }, 0)
+    check.near(wide:histogram("i", 2).counts, { 1, 2 }, 0)
     -- numbers that are none count nowhere; infinite ones are the last or the first
     local odd = { math.huge, 0 / 0, 1, -math.huge, 3 }
     local far = run { number = 5, build = function() return empty end, measure = function(_, draw)
