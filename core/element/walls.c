@@ -3,10 +3,11 @@
  * Both faces are seen along their mean normal n, which is unit and points from A to B. Their common outline is a convex
  * polygon. Its corners lie on each wall where a line along n meets that. The opening at a corner is the distance along
  * n from A's wall to B's. Its mean over the area is exact for plane walls: the fan rule. Of a deformable block each
- * triangle of a face is a wall. */
+ * triangle of a face is a wall. All walls are sought, also of one body: any may hide another (near_walls.c). */
 #include "element/walls.h"
 
 #include "base/error.h"
+#include "element/near_walls.h"
 #include "geometry/measure.h"
 #include "geometry/point2.h"
 #include "model/joints.h"
@@ -18,33 +19,10 @@
 #include <string.h>
 #include <talus/elementary.h>
 
-/* Tolerance: area of a polygon over the squares of its blocks' sizes, below which it is none: an edge on an edge. */
-#define NO_AREA 1e-9
 #define DEGREE (3.14159265358979323846 / 180)
 #define MOST_CORNERS TL_POLY_MAX_VERTICES
 /* Limit: joints that a filter names. */
 #define MOST_JOINTS 64
-
-/* A flat wall of a block, from the model's origin, counter-clockwise from outside. */
-typedef struct flat {
-    tl_id block;
-    uint32_t row, face;
-    tl_tag tag;
-    tl_plane plane;
-    size_t corner, count; /* in the list of corners */
-} flat;
-
-/* All walls, block by block, and boxes about blocks. */
-typedef struct flats {
-    const tl_model *m;
-    flat *at;
-    tl_vec3 *corner;
-    size_t count, capacity, corner_count, corner_capacity;
-    size_t *first;  /* [blocks + 1] */
-    tl_bounds *box; /* [blocks] */
-    tl_point2 *point[4];
-    size_t point_capacity[4];
-} flats;
 
 /* What is looked for. */
 typedef struct search {
@@ -53,11 +31,13 @@ typedef struct search {
     bool any;
     tl_tag joint[MOST_JOINTS];
     size_t joints;
+    tl_wall_sides *sides; /* of each polygon */
+    size_t side_capacity;
 } search;
 
 /* ---------------------------------------------------------------- walls of one block ----- */
 
-static bool put_flat(flats *f, const flat *one, const tl_vec3 *corner, size_t count)
+static bool put_flat(tl_flats *f, const tl_flat *one, const tl_vec3 *corner, size_t count)
 {
     if (!tl_grow(&f->at, &f->capacity, f->count + 1, sizeof *f->at) ||
         !tl_grow(&f->corner, &f->corner_capacity, f->corner_count + count, sizeof *f->corner))
@@ -70,21 +50,21 @@ static bool put_flat(flats *f, const flat *one, const tl_vec3 *corner, size_t co
     return true;
 }
 
-static bool put_face(flats *f, uint32_t row, uint32_t face, tl_vec3 *scratch)
+static bool put_face(tl_flats *f, uint32_t row, uint32_t face, tl_vec3 *scratch)
 {
     const tl_model *m = f->m;
     const tl_poly *shape = m->blocks.shape[row];
     const uint32_t body = m->blocks.body[row];
     const tl_vec3 n = tl_m3_mul(&m->bodies.pose[body].r, shape->plane[face].normal);
     const double offset = shape->plane[face].offset + tl_v3_dot(n, tl_body_place(&m->bodies, body));
-    const flat one = {m->blocks.id[row], row, face, shape->tag[face], {n, offset}, 0, 0};
+    const tl_flat one = {m->blocks.id[row], row, face, shape->tag[face], {n, offset}, 0, 0};
     const size_t count = tl_poly_face_size(shape, face);
     for (size_t i = 0; i < count; i++)
         scratch[i] = tl_body_point(&m->bodies, body, shape->vertex[shape->loop[shape->start[face] + i]]);
     return put_flat(f, &one, scratch, count);
 }
 
-static bool put_triangles(flats *f, uint32_t row, uint32_t face)
+static bool put_triangles(tl_flats *f, uint32_t row, uint32_t face)
 {
     const tl_model *m = f->m;
     size_t count;
@@ -95,7 +75,8 @@ static bool put_triangles(flats *f, uint32_t row, uint32_t face)
         for (int a = 0; a < 3; a++)
             x[a] = tl_gridpoint_place(&m->zones->points, part[k].corner[a]);
         const tl_vec3 n = tl_v3_unit(tl_v3_cross(tl_v3_sub(x[1], x[0]), tl_v3_sub(x[2], x[0])));
-        const flat one = {m->blocks.id[row], row, face, m->blocks.shape[row]->tag[face], {n, tl_v3_dot(n, x[0])}, 0, 0};
+        const tl_flat one = {m->blocks.id[row],       row, face, m->blocks.shape[row]->tag[face],
+                             {n, tl_v3_dot(n, x[0])}, 0,   0};
         enough = put_flat(f, &one, x, 3);
     }
     return enough;
@@ -108,7 +89,7 @@ static void widen(tl_bounds *box, tl_vec3 x)
 }
 
 /* Lists the walls of all blocks. Faces inside of a body are none. */
-static bool list_flats(flats *f, double gap)
+static bool list_flats(tl_flats *f, double gap)
 {
     const tl_model *m = f->m;
     const size_t rows = m->blocks.table.rows;
@@ -166,7 +147,7 @@ static tl_vec3 on_plane(const frame *f, tl_point2 q, tl_plane plane)
 }
 
 /* The common outline of two walls; its corners are in *out. */
-static size_t common(flats *f, const frame *in, const flat *a, const flat *b, const tl_point2 **out)
+static size_t common(tl_flats *f, const frame *in, const tl_flat *a, const tl_flat *b, const tl_point2 **out)
 {
     const size_t most = a->count + b->count;
     for (int k = 0; k < 3; k++)
@@ -195,13 +176,32 @@ static double mean_over(const tl_point2 *q, const double *value, size_t count, d
     return twice > 0 ? sum / twice : 0;
 }
 
+static tl_point2 middle_of(const tl_point2 *q, size_t count)
+{
+    tl_point2 sum = {0, 0};
+    for (size_t i = 0; i < count; i++)
+        sum = (tl_point2){sum.x + q[i].x / (double)count, sum.y + q[i].y / (double)count};
+    return sum;
+}
+
+/* Whether walls that overlap are those of two thin blocks on each other, and look away from each other. Then the
+ * overlap is at least what both blocks measure. */
+static bool look_away(const tl_flats *f, const frame *in, const tl_flat *a, const tl_flat *b, const tl_point2 *q,
+                      size_t count, double overlap)
+{
+    const tl_point2 middle = middle_of(q, count);
+    const tl_vec3 back = tl_v3_neg(in->n);
+    return overlap > tl_flats_depth(f, a->row, on_plane(in, middle, a->plane), back) ||
+           overlap > tl_flats_depth(f, b->row, on_plane(in, middle, b->plane), in->n);
+}
+
 static const char *joint_name(const tl_model *m, tl_tag tag)
 {
     return tag.joint ? m->joints[tag.joint - 1].name : "";
 }
 
 /* Adds the polygon of two walls that face each other, if there is one. */
-static bool put_wall(search *s, flats *f, const flat *a, const flat *b)
+static bool put_wall(search *s, tl_flats *f, const tl_flat *a, const tl_flat *b, bool meant)
 {
     tl_placing *p = s->p;
     const tl_model *m = f->m;
@@ -213,7 +213,8 @@ static bool put_wall(search *s, flats *f, const flat *a, const flat *b)
     if (count < 3)
         return true;
     if (!tl_grow(&p->wall_corner, &p->wall_corner_capacity, p->wall_corner_count + 2 * count, sizeof *p->wall_corner) ||
-        !tl_grow(&p->wall, &p->wall_capacity, p->wall_count + 1, sizeof *p->wall))
+        !tl_grow(&p->wall, &p->wall_capacity, p->wall_count + 1, sizeof *p->wall) ||
+        !tl_grow(&s->sides, &s->side_capacity, p->wall_count + 1, sizeof *s->sides))
         return false;
     double *opening = &f->point[3][0].x, area;
     tl_vec3 *on_a = p->wall_corner + p->wall_corner_count, *on_b = on_a + count;
@@ -225,8 +226,11 @@ static bool put_wall(search *s, flats *f, const flat *a, const flat *b)
     }
     const double mean = mean_over(q, opening, count, &area);
     const double size = fmin(m->blocks.size[a->row], m->blocks.size[b->row]);
-    if (!(area > NO_AREA * size * size) || fabs(mean) > s->gap)
+    if (!(area > TL_WALL_NO_AREA * size * size) || fabs(mean) > s->gap)
         return true;
+    if (area > TL_WALL_LEAST_HIDDEN * size * size && mean < 0 && look_away(f, &in, a, b, q, count, -mean))
+        return true;
+    s->sides[p->wall_count] = (tl_wall_sides){{(size_t)(a - f->at), (size_t)(b - f->at)}, meant};
     p->wall[p->wall_count++] = (tl_element_wall){.block = {a->block, b->block},
                                                  .face = {a->face, b->face},
                                                  .joint = joint_name(m, tl_flush_tag(a->tag, b->tag)),
@@ -246,18 +250,18 @@ static bool is_meant(const search *s, tl_tag tag)
     return meant;
 }
 
-static bool try_pair(search *s, flats *f, uint32_t row, uint32_t other)
+static bool try_pair(search *s, tl_flats *f, uint32_t row, uint32_t other)
 {
     const uint32_t a_row = row < other ? row : other, b_row = row < other ? other : row;
+    const bool apart = f->m->blocks.body[row] != f->m->blocks.body[other];
     bool enough = true;
-    if (f->m->blocks.body[row] == f->m->blocks.body[other] || !tl_bounds_meet(&f->box[row], &f->box[other]))
+    if (!tl_bounds_meet(&f->box[row], &f->box[other]))
         return true;
     for (size_t i = f->first[a_row]; i < f->first[a_row + 1]; i++)
         for (size_t k = f->first[b_row]; k < f->first[b_row + 1] && enough; k++) {
-            const flat *a = &f->at[i], *b = &f->at[k];
-            if (-tl_v3_dot(a->plane.normal, b->plane.normal) >= s->least_cosine &&
-                is_meant(s, tl_flush_tag(a->tag, b->tag)))
-                enough = put_wall(s, f, a, b);
+            const tl_flat *a = &f->at[i], *b = &f->at[k];
+            if (-tl_v3_dot(a->plane.normal, b->plane.normal) >= s->least_cosine)
+                enough = put_wall(s, f, a, b, apart && is_meant(s, tl_flush_tag(a->tag, b->tag)));
         }
     return enough;
 }
@@ -278,7 +282,7 @@ static int compare_x(const void *a, const void *b)
     return p->row < q->row ? -1 : p->row > q->row;
 }
 
-static bool try_all(search *s, flats *f)
+static bool try_all(search *s, tl_flats *f)
 {
     const size_t rows = f->m->blocks.table.rows;
     by_x *at = malloc((rows + 1) * sizeof *at);
@@ -329,11 +333,21 @@ static tl_status read_joints(search *s, const char *names)
     return TL_OK;
 }
 
+/* Tells each polygon where its corners are, now that the list has found its place. */
+static void find_corners(tl_placing *p)
+{
+    for (size_t k = 0, corner = 0; k < p->wall_count; k++) {
+        p->wall[k].corners[0] = p->wall_corner + corner;
+        p->wall[k].corners[1] = p->wall_corner + corner + p->wall[k].corner_count;
+        corner += 2 * p->wall[k].corner_count;
+    }
+}
+
 tl_status tl_walls_find(tl_placing *p, const tl_wall_filter *filter)
 {
     tl_model *m = p->m;
     search s = {.p = p, .gap = filter->gap};
-    flats f = {.m = m};
+    tl_flats f = {.m = m};
     p->wall_count = p->wall_corner_count = 0;
     if (!(filter->gap >= 0 && isfinite(filter->gap)) || !(filter->angle >= 0 && filter->angle <= 45))
         return tl_fail(&m->error, TL_E_ARGUMENT,
@@ -343,15 +357,15 @@ tl_status tl_walls_find(tl_placing *p, const tl_wall_filter *filter)
     if (status != TL_OK)
         return status;
     s.least_cosine = tl_cos(filter->angle * DEGREE);
-    const bool enough = list_flats(&f, s.gap) && try_all(&s, &f);
-    for (size_t k = 0, corner = 0; enough && k < p->wall_count; k++) { /* the list has found its place */
-        p->wall[k].corners[0] = p->wall_corner + corner;
-        p->wall[k].corners[1] = p->wall_corner + corner + p->wall[k].corner_count;
-        corner += 2 * p->wall[k].corner_count;
+    bool enough = list_flats(&f, s.gap) && try_all(&s, &f);
+    if (enough) {
+        find_corners(p);
+        enough = tl_walls_keep_near(p, &f, s.sides);
+        find_corners(p);
     }
     if (enough && p->wall_count > 1)
         qsort(p->wall, p->wall_count, sizeof *p->wall, compare_walls);
-    void *const owned[] = {f.at, f.corner, f.first, f.box, f.point[0], f.point[1], f.point[2], f.point[3]};
+    void *const owned[] = {f.at, f.corner, f.first, f.box, f.point[0], f.point[1], f.point[2], f.point[3], s.sides};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     return enough ? TL_OK : tl_fail_memory(&m->error);

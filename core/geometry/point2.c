@@ -1,8 +1,7 @@
 /* point2.c - what two convex polygons of a plane have in common (Sutherland and Hodgman 1974). */
 #include "geometry/point2.h"
 
-/* Keeps what lies left of the line from o to q; returns the number of corners. */
-static size_t keep_left(const tl_point2 *in, size_t count, tl_point2 o, tl_point2 q, tl_point2 *out)
+size_t tl_polygon_left(const tl_point2 *in, size_t count, tl_point2 o, tl_point2 q, tl_point2 *out)
 {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
@@ -19,7 +18,7 @@ static size_t keep_left(const tl_point2 *in, size_t count, tl_point2 o, tl_point
 size_t tl_polygon_common(tl_point2 **now, tl_point2 **next, size_t count, const tl_point2 *by, size_t sides)
 {
     for (size_t i = 0; i < sides && count; i++) {
-        count = keep_left(*now, count, by[(i + 1) % sides], by[i], *next);
+        count = tl_polygon_left(*now, count, by[(i + 1) % sides], by[i], *next);
         tl_point2 *swap = *now;
         *now = *next;
         *next = swap;

@@ -34,6 +34,9 @@ TL_INLINE tl_point2 tl_part_way(tl_point2 p, tl_point2 q, double h, double g)
     return (tl_point2){p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)};
 }
 
+/* Keeps of a convex polygon what lies left of the line from o to q, in *out, which has room for twice as many corners.
+ * Returns the number of corners. */
+size_t tl_polygon_left(const tl_point2 *in, size_t count, tl_point2 o, tl_point2 q, tl_point2 *out);
 /* Keeps of a convex polygon, counter-clockwise, what lies left of each side of another. That is given clockwise, as a
  * face is seen that looks at it. Returns the number of corners. `now` and `next` have room for as many as both have;
  * what is kept is in *now. */

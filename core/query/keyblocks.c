@@ -12,6 +12,7 @@
  *     r = s + sum N_i n_i,   N_i >= 0,   s . n_i <= 0,   N_i (s . n_i) = 0
  *
  * with no N_i (falling), one (sliding on a face) or two (sliding on two faces); s = 0 is stable whatever the friction.
+ * s is one; where three faces or more lie along it, as in a prism, the N_i are not: the least safe ones count.
  * Factor of safety, with joints that do not dilate and no joint forces beyond those the active force brings about:
  *
  *     sum (N_i tan(friction_i) + cohesion_i A_i) / |s|
@@ -267,6 +268,15 @@ static tl_status find_pyramid(work *w, size_t first, bool *empty)
 
 /* ---------------------------------------------------------------- mode ------------------- */
 
+/* Begins a way to slide; what was found before may be less safe. */
+static tl_keyblock other_way(const tl_keyblock *block, int32_t mode)
+{
+    tl_keyblock way = *block;
+    way.mode = mode;
+    way.face_count = 0;
+    return way;
+}
+
 static void put_face(const work *w, tl_keyblock *block, size_t face, double normal_force)
 {
     const constraint *c = &w->faces[face];
@@ -287,7 +297,14 @@ static void put_sliding(const work *w, tl_keyblock *block, tl_vec3 s, size_t i, 
     block->safety = held / block->driving;
 }
 
-static bool slides_on_one(const work *w, tl_vec3 r, tl_keyblock *block)
+/* Where a face bears nothing, ways with it and without it differ by rounding: that of fewer faces stays. */
+static void keep_less_safe(tl_keyblock *block, const tl_keyblock *way)
+{
+    if (way->safety < (1 - TL_TOUCH_ALONG) * block->safety)
+        *block = *way;
+}
+
+static void slide_on_one(const work *w, tl_vec3 r, tl_keyblock *block)
 {
     double size = tl_v3_norm(r);
     for (size_t i = 0; i < w->count; i++) {
@@ -295,15 +312,14 @@ static bool slides_on_one(const work *w, tl_vec3 r, tl_keyblock *block)
         tl_vec3 s = tl_v3_madd(r, -normal_force, w->faces[i].along);
         if (!(normal_force > 0) || tl_v3_norm(s) <= TL_TOUCH_ALONG * size || !is_free(w, tl_v3_unit(s), i, i))
             continue;
-        block->mode = TL_KEYBLOCK_SLIDING;
-        put_face(w, block, i, normal_force);
-        put_sliding(w, block, s, i, i);
-        return true;
+        tl_keyblock way = other_way(block, TL_KEYBLOCK_SLIDING);
+        put_face(w, &way, i, normal_force);
+        put_sliding(w, &way, s, i, i);
+        keep_less_safe(block, &way);
     }
-    return false;
 }
 
-static bool slides_on_two(const work *w, tl_vec3 r, tl_keyblock *block)
+static void slide_on_two(const work *w, tl_vec3 r, tl_keyblock *block)
 {
     double size = tl_v3_norm(r);
     for (size_t i = 0; i < w->count; i++)
@@ -319,13 +335,12 @@ static bool slides_on_two(const work *w, tl_vec3 r, tl_keyblock *block)
             if (!(force_i > 0 && force_j > 0) || tl_v3_norm(s) <= TL_TOUCH_ALONG * size ||
                 !is_free(w, tl_v3_unit(s), i, j))
                 continue;
-            block->mode = TL_KEYBLOCK_SLIDING_ON_TWO;
-            put_face(w, block, i, force_i);
-            put_face(w, block, j, force_j);
-            put_sliding(w, block, s, i, j);
-            return true;
+            tl_keyblock way = other_way(block, TL_KEYBLOCK_SLIDING_ON_TWO);
+            put_face(w, &way, i, force_i);
+            put_face(w, &way, j, force_j);
+            put_sliding(w, &way, s, i, j);
+            keep_less_safe(block, &way);
         }
-    return false;
 }
 
 static void find_mode(const work *w, tl_vec3 r, tl_keyblock *block)
@@ -339,8 +354,8 @@ static void find_mode(const work *w, tl_vec3 r, tl_keyblock *block)
         put_sliding(w, block, r, SIZE_MAX, SIZE_MAX);
         return;
     }
-    if (!slides_on_one(w, r, block))
-        slides_on_two(w, r, block);
+    slide_on_one(w, r, block);
+    slide_on_two(w, r, block);
 }
 
 /* ---------------------------------------------------------------- all -------------------- */

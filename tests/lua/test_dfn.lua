@@ -133,6 +133,11 @@ end
 for _, case in ipairs {
     { { number = false }, "give one of p32, number and file: there is none" },
     { { p32 = 1 }, "give one of p32, number and file: there are two" },
+    { { number = false, dip = false, dip_direction = false, size_mean = false, file = "x.csv", size_min = 1 }, "'x.csv' has orientations and sizes" },
+    { { number = false, dip = false, dip_direction = false, size_mean = false, file = "x.csv", exponent = 1 }, "'x.csv' has orientations and sizes" },
+    { { number = false, dip = false, dip_direction = false, size_mean = false, file = "x.csv", size = "lognormal" },
+        "'x.csv' has orientations and sizes" },
+    { { number = false, p32 = 5, size = "lognormal", size_mean = 10, size_dev = 30, size_max = 0.04 }, "p32 = 5 1/m takes some 1.9" },
     { { dip = false }, "dip is missing: give dip and dip_direction, poles, or file" },
     { { poles = "x.csv" }, "poles give the orientations: leave out dip, dip_direction and fisher_k" },
     { { size_mean = false }, "size = 'fixed' needs size_mean" },
@@ -185,6 +190,8 @@ do
         { { observed = { safety = 2 }, build = function() end }, "build gave nil, not a model" },
         { { observed = { safety = 2 }, unknown = { x = { 3, 3 } } }, "from = 3 must be below to = 3" },
         { { observed = { safety = 2 }, unknown = 3 }, "unknown must be a table" },
+        { { observed = { safety = 2 }, unknown = { x = { 0, 10, form = 1 } } }, "unknown parameter 'form'; did you mean 'from'?" },
+        { { observed = { safety = 2 }, unknown = { x = { 0, 10, 20 } } }, "unknown parameter '3' (known: 1, 2, from, to)" },
         { { observed = { safety = 2 }, measure = 3 }, "measure must be a function" },
         { { observed = { safety = 2 }, tolerence = 3 }, "unknown parameter 'tolerence'; did you mean 'tolerance'?" },
     } do

@@ -247,3 +247,25 @@ do
     slope = slope:copy()
     holds "copied"
 end
+
+-- Of three faces along the motion the normal forces are not given: of a block in a trough with a floor, that slides along it, the least
+-- safe ones count, whatever the order of the cuts. On the floor N = W; on both sides N = W / sqrt(2) each. T = W / 2.
+for _, order in ipairs { { "L", "R", "B" }, { "B", "R", "L" }, { "R", "B", "L" } } do
+    local trough = talus.model { gravity = { 0, -5, -10 } }
+    local cuts = { L = { 45, 90, { -0.5, 0, -0.5 } }, R = { 45, 270, { 0.5, 0, -0.5 } }, B = { 0, 0, { 0, 0, -0.5 } } }
+    trough:generate("box", { min = { -2, 0, -2 }, max = { 2, 1, 1 }, density = 2000 })
+    for _, name in ipairs(order) do
+        trough:generate("joint", { joint = name, dip = cuts[name][1], dip_direction = cuts[name][2], origin = cuts[name][3] })
+    end
+    local in_it = trough:blocks { containing = { 0, 0.5, 0.5 } }[1]
+    trough:blocks { where = function(one) return one.id ~= in_it.id end }:fix()
+    local function slides(floor, sides)
+        return trough:keyblocks { friction = { B = floor, L = sides, R = sides } }[1]
+    end
+    local on_sides, on_floor = slides(40, 20), slides(20, 40)
+    check.equal(on_sides.mode, "sliding on two")
+    check.near(on_sides.safety, 2 * math.sqrt(2) * math.tan(math.rad(20)), 1e-12)
+    check.equal(on_floor.mode, "sliding")
+    check.equal(on_floor.faces[1].joint, "B:1")
+    check.near(on_floor.safety, 2 * math.tan(math.rad(20)), 1e-12)
+end

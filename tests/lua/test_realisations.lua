@@ -75,6 +75,24 @@ do
     end
 end
 
+-- A build that takes math.random is built anew as it was in its row, and the script's own numbers do not hang on the row.
+do
+    local set = run { number = 4, build = function()
+        local model = talus.model {}
+        model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 + math.random() }, density = 1000 })
+        return model
+    end, measure = function(model)
+        return { volume = model:blocks():sum "volume" }
+    end }
+    local after = {}
+    for i, row in ipairs(set:rows()) do
+        math.randomseed(5)
+        check.equal(set:model(i):blocks():sum "volume", row.volume)
+        after[i] = math.random()
+        check.equal(after[i], after[1])
+    end
+end
+
 -- A screen that decides leaves out the measure; the columns are those of the trial all the same.
 do
     local set = run { number = 40, screen = function(_, draw)
@@ -342,6 +360,7 @@ with(function(draw)
     for _, case in ipairs {
         { function() draw.normal("a", 1, 3) end, "draw.normal('a'): 'a' is drawn as normal(1, 2, -inf, inf) already" },
         { function() draw.uniform("a", 1, 3) end, "'a' is drawn as normal" },
+        { function() draw.fisher("a", 30, 120, 50) end, "'a' is drawn as normal" },
         { function() draw.normal("b", 1, -1) end, "sd = -1 must be >= 0" },
         { function() draw.normal("b", 0 / 0, 1) end, "the mean must be a number" },
         { function() draw.normal("b", 0, 1, { min = 2, max = 1 }) end, "min = 2 is above max = 1" },
@@ -360,6 +379,7 @@ with(function(draw)
         { function() draw.correlated({ "e", "f", "g" }, { { 0, 1 }, { 0, 1 }, { 0, 1 } },
             { { 1, 0.9, -0.9 }, { 0.9, 1, 0.9 }, { -0.9, 0.9, 1 } }) end, "the correlation matrix is none" },
         { function() draw.correlated({ "e" }, { { 0, 1 } }, 1) end, "give two or more" },
+        { function() draw.correlated({ "e", "f" }, { { 0, 1, mim = 0 }, { 0, 1 } }, 0) end, "unknown parameter 'mim'; did you mean 'min'?" },
     } do
         check.raises(case[1], case[2])
     end
@@ -459,6 +479,11 @@ do
     local histogram = set:histogram("v", 3)
     check.near(histogram.edges, { 1, 4, 7, 10 }, 0)
     check.near(histogram.counts, { 3, 0, 1 }, 0)
+    local wide = run { number = 3, measure = function(_, draw)
+        return { i = ({ math.mininteger, 0, math.maxinteger })[draw.row] }
+    end }
+    check.near(wide:histogram("i", 2).edges, { -2.0 ^ 63, 0, 2.0 ^ 63 }, 0)
+    check.near(wide:histogram("i", 2).counts, { 1, 2 }, 0)
     -- numbers that are none count nowhere; infinite ones are the last or the first
     local odd = { math.huge, 0 / 0, 1, -math.huge, 3 }
     local far = run { number = 5, build = function() return empty end, measure = function(_, draw)

@@ -96,6 +96,17 @@ static inline double tl_lognormal_quantile(tl_lognormal d, double u)
     return tl_lane_exp(d.mean + d.dev * tl_normal_quantile(u));
 }
 
+/* The mean of x^k, k >= 0, of the numbers between min >= 0 and max, which hold a share > 0 of all. */
+static inline double tl_lognormal_moment(tl_lognormal d, double min, double max, double k)
+{
+    const tl_lognormal weighted = {d.mean + k * d.dev * d.dev, d.dev};
+    const double all = tl_lane_exp(k * d.mean + 0.5 * k * k * d.dev * d.dev);
+    if (!(d.dev > 0))
+        return all;
+    return all * (tl_lognormal_below(weighted, max) - tl_lognormal_below(weighted, min)) /
+           (tl_lognormal_below(d, max) - tl_lognormal_below(d, min));
+}
+
 /* ---------------------------------------------------------------- others ----------------- */
 
 /* min <= mode <= max, min < max. */

@@ -118,12 +118,14 @@ static tl_status check(const tl_host *host, const params *p)
                           : ways == 2 ? "two"
                                       : "three");
     if (p->file) {
-        if (p->poles || !isnan(p->dip) || !isnan(p->dip_direction) || p->fisher_k > 0 || p->size_mean > 0 ||
-            p->size_max > 0)
-            return host->fail(host, TL_E_ARGUMENT,
-                              "file '%.200s' has orientations and sizes: leave out dip, dip_direction, fisher_k, poles "
-                              "and what tells sizes",
-                              p->file);
+        const bool sized = p->size != FIXED || p->exponent > 0 || p->size_mean > 0 || p->size_dev > 0 ||
+                           p->size_min > 0 || p->size_max > 0;
+        if (p->poles || !isnan(p->dip) || !isnan(p->dip_direction) || p->fisher_k > 0 || sized)
+            return host->fail(
+                host, TL_E_ARGUMENT,
+                "file '%.200s' has orientations and sizes: leave out dip, dip_direction, fisher_k, poles, "
+                "size, exponent, size_mean, size_dev, size_min and size_max",
+                p->file);
         return TL_OK;
     }
     if (p->poles && (!isnan(p->dip) || !isnan(p->dip_direction) || p->fisher_k > 0))
@@ -178,7 +180,9 @@ static double mean_square(const network *n)
     const params *p = n->p;
     if (p->size == POWER_LAW)
         return tl_power_law_moment(p->exponent, p->size_min, p->size_max, 2);
-    return p->size_mean * p->size_mean + (p->size == LOGNORMAL ? p->size_dev * p->size_dev : 0);
+    if (p->size == LOGNORMAL)
+        return tl_lognormal_moment(n->lognormal, fmax(p->size_min, 0), n->farthest, 2);
+    return p->size_mean * p->size_mean;
 }
 
 /* More than MOST_DISCS would be needed. */

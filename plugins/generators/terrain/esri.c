@@ -5,7 +5,7 @@
  *     xllcorner 1000                   the south-west corner of the first cell; or xllcenter, yllcenter: its middle
  *     yllcorner 2000
  *     cellsize 5                       or dx and dy
- *     NODATA_value -9999               -9999 where it is left out
+ *     NODATA_value -9999               -9999 where it is left out; nan as well
  *     12 13 14                         the first row is the northern one
  *     11 12 -9999
  *
@@ -15,6 +15,9 @@
 
 /* Default: heights of this number are none. */
 #define NO_DATA (-9999.0)
+/* Tolerance: relative difference of a height from a NODATA_value beyond all heights, which fewer digits make, as of
+ * -3.4028234663852886e+38. Test: lua/test_terrain. */
+#define SAME_DIGITS 1e-5
 
 enum { COLUMNS, ROWS, X_CORNER, Y_CORNER, X_CENTER, Y_CENTER, SIZE, DX, DY, NONE, KEYS };
 static const char *const keys[KEYS] = {"ncols",     "nrows",    "xllcorner", "yllcorner", "xllcenter",
@@ -49,7 +52,7 @@ static tl_status read_key(const tl_host *host, const char *file, words *w, int k
     return TL_OK;
 }
 
-/* Reads keys up to the first number, which it leaves. */
+/* Reads keys up to the first height, which it leaves. */
 static tl_status read_header(const tl_host *host, const char *file, words *w, header *h)
 {
     char word[MOST_LETTERS + 1];
@@ -58,13 +61,12 @@ static tl_status read_header(const tl_host *host, const char *file, words *w, he
         w->at += 3;
     while (status == TL_OK) {
         const words before = *w;
-        double number;
         int key = 0;
         if (!words_take(w, word))
             return TL_OK;
         while (key < KEYS && strcmp(word, keys[key]) != 0)
             key++;
-        if (key == KEYS && word_number(word, &number)) {
+        if (key == KEYS && strchr("+-.0123456789", *word)) {
             *w = before;
             return TL_OK;
         }
@@ -99,6 +101,13 @@ static tl_status check_header(const tl_host *host, const char *file, const heade
     return TL_OK;
 }
 
+static bool is_none(double z, double none)
+{
+    if (isnan(none))
+        return isnan(z);
+    return z == none || (isfinite(none) && fabs(none) > FARTHEST && fabs(z - none) <= SAME_DIGITS * fabs(none));
+}
+
 static tl_status read_heights(const tl_host *host, const char *file, words *w, double none, grid *g)
 {
     char word[MOST_LETTERS + 1];
@@ -110,11 +119,11 @@ static tl_status read_heights(const tl_host *host, const char *file, words *w, d
                                   "file '%.200s' ends before row %u, column %u of %u rows and %u columns: it is "
                                   "truncated",
                                   file, row + 1, column + 1, g->rows, g->columns);
-            if (!word_number(word, &z) || (z != none && !(fabs(z) <= FARTHEST)))
+            if (!word_number(word, &z) || (!is_none(z, none) && !(fabs(z) <= FARTHEST)))
                 return host->fail(host, TL_E_ARGUMENT,
-                                  "file '%.200s', row %u, column %u: the height '%s' is no number in [-1e9, 1e9]", file,
-                                  row + 1, column + 1, word);
-            g->z[(size_t)row * g->columns + column] = z == none ? NAN : z;
+                                  "file '%.200s', row %u, column %u: the height '%s' is no number in [-1e9, 1e9]%s",
+                                  file, row + 1, column + 1, word, strchr(word, ',') ? ": write decimal points" : "");
+            g->z[(size_t)row * g->columns + column] = is_none(z, none) ? NAN : z;
         }
     if (words_take(w, word))
         return host->fail(host, TL_E_ARGUMENT, "file '%.200s', line %zu: '%s' is beyond %u rows of %u heights", file,

@@ -20,12 +20,12 @@ local function distance(a, b)
     return row[#b]
 end
 
--- The known word that a wrong one most likely means, or nil.
+-- The known word that a wrong one most likely means, or nil. Places of a list are no words.
 function arguments.nearest(word, known)
     local best, name = #word // 3 + 2, nil
     for _, candidate in ipairs(known) do
-        local far = distance(word, candidate)
-        if far < best or candidate:sub(1, #word) == word and #word > 1 and not name then
+        local far = type(candidate) == "string" and distance(word, candidate) or math.huge
+        if far < best or far < math.huge and candidate:sub(1, #word) == word and #word > 1 and not name then
             best, name = math.min(far, best), candidate
         end
     end

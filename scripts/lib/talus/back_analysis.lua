@@ -24,6 +24,7 @@ end
 local function read_interval(name, given)
     local where = ("back_analysis, unknown '%s'"):format(name)
     arguments.table(where, given, "the interval")
+    arguments.check_keys(where, given, { 1, 2, "from", "to" })
     local ends = { from = given.from or given[1], to = given.to or given[2] }
     local from = arguments.number(where, ends, "from", nil, -1e300, 1e300)
     local to = arguments.number(where, ends, "to", nil, -1e300, 1e300)

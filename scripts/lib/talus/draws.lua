@@ -195,12 +195,17 @@ function draws.new(seed, row, latin)
         return chance.uniform(seed, row, name, part or 0, latin)
     end
 
-    -- Keeps a value under a name, of one distribution only.
-    local function keep(where, name, value, distribution)
+    -- Two distributions of one name would be drawn by the same numbers.
+    local function claim(where, name, distribution)
         if known[name] and known[name] ~= distribution then
             fail("%s: '%s' is drawn as %s already: give this draw another name", where, name, known[name])
         end
         known[name] = distribution
+    end
+
+    -- Keeps a value under a name, of one distribution only.
+    local function keep(where, name, value, distribution)
+        claim(where, name, distribution)
         drawn[name] = value
         return value
     end
@@ -260,8 +265,9 @@ function draws.new(seed, row, latin)
         arguments.number(where, given, "dip", nil, 0, 90)
         arguments.number(where, given, "dip_direction", nil, 0, 360)
         positive(where, "the concentration", kappa)
-        local a, b = chance.fisher(dip, dip_direction, kappa, uniform(name, 0), uniform(name, 1))
         local how = told("fisher", dip, dip_direction, kappa)
+        claim(where, name, how)
+        local a, b = chance.fisher(dip, dip_direction, kappa, uniform(name, 0), uniform(name, 1))
         return keep(where, name .. ".dip", a, how), keep(where, name .. ".dip_direction", b, how)
     end)
 

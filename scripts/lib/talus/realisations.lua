@@ -49,9 +49,14 @@ local function build_with(run, draw)
     return model
 end
 
+-- What math.random gives in a realisation hangs on seed and row, as draws do.
+local function seed_random(run, row)
+    math.randomseed(chance.key(run.seed, row, "math.random"))
+end
+
 -- Builds and measures a realisation. `all`: the measure is taken whatever the screen says.
 local function realise(run, row, all, drawn_into)
-    math.randomseed(chance.key(run.seed, row, "math.random"))
+    seed_random(run, row)
     local draw, drawn = draws.new(run.seed, row, run.latin and run.number or 0)
     drawn_into(drawn)
     local model, fields, decided = build_with(run, draw), {}, false
@@ -384,6 +389,18 @@ local function go(run)
     end
 end
 
+-- The model of a row, built anew in the script's own process, whose random numbers go on as if it had drawn two of them.
+local function build_row(run, row)
+    local a, b = math.random(0), math.random(0)
+    seed_random(run, row)
+    local good, model = pcall(build_with, run, (draws.new(run.seed, row, run.latin and run.number or 0)))
+    math.randomseed(a, b)
+    if not good then
+        error(model, 0)
+    end
+    return model
+end
+
 -- A sentence of the kernel's without the place in these modules.
 local function without_place(message)
     return type(message) == "string" and message:match "^.-talus/realisations%.lua:%d+: (.*)$" or nil
@@ -401,7 +418,7 @@ local function realisations(given)
     end
     return setmetatable({ list = run.list, columns = run.columns, last_draw = run.draws + 2, errors = run.errors,
         number = run.number, file = run.file, stopped = run.stopped or false, build_row = function(row)
-            return build_with(run, (draws.new(run.seed, row, run.latin and run.number or 0)))
+            return build_row(run, row)
         end }, realised)
 end
 

@@ -131,7 +131,7 @@ function methods.histogram(self, field, intervals)
         fail("histogram: the number of intervals must be in [1, 10000], not %s", arguments.describe(intervals))
     end
     table.sort(list)
-    local low, high = list[1], list[#list]
+    local low, high = list[1] + 0.0, list[#list] + 0.0 -- differences of large integers wrap
     if high - low == math.huge or low == -math.huge or high == math.huge then
         fail("histogram: '%s' has numbers that are not finite", field)
     end
