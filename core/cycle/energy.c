@@ -90,8 +90,8 @@ static void note_terms(tl_ledger *l, const double now[TL_BOOK_COUNT], double sto
         e->friction += strcmp(l->term[k].name, tl_zones_act.name) != 0 ? l->term[k].heat : 0;
 }
 
-/* The balance of the terms. `changed`: by something else than forces in a march, as what a deleted block's contacts held
- * or another law of them holds, or by a relaxation, whose inertia and stops are its own. */
+/* The balance of the terms. `changed`: by something else than the forces of a march. That is what a deleted block's
+ * contacts held, or another law of them holds, and what a relaxation does, whose inertia and stops are its own. */
 static void balance(tl_ledger *l, bool first, bool changed)
 {
     tl_energy *e = &l->energy;

@@ -5,7 +5,7 @@
  *     g = (-e, -a x e, e, b x e)
  *
  * of their freedoms, and adds k g^T g to the stiffness K. Points that press, or pull, have kn A across the joint and
- * ks A along it, and so have those that bear nothing just now and would pull. A field contact has the springs of its
+ * ks A along it. So have those that bear nothing just now and would pull. A field contact has the springs of its
  * area at the centre of its pressure (secants.c has the same).
  * An element adds its tangent (element/tangent.c). One that stands for what lies outside, as a quiet face, adds none.
  *
