@@ -91,7 +91,7 @@ static void note_terms(tl_ledger *l, const double now[TL_BOOK_COUNT], double sto
 }
 
 /* The balance of the terms. `changed`: by something else than the forces of a march. That is what a deleted block's
- * contacts held, or another law of them holds, and what a relaxation does, whose inertia and stops are its own. */
+ * contacts held, or another law of them holds, and what a relaxation does by its own inertia and stops. */
 static void balance(tl_ledger *l, bool first, bool changed)
 {
     tl_energy *e = &l->energy;
