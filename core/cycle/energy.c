@@ -90,7 +90,8 @@ static void note_terms(tl_ledger *l, const double now[TL_BOOK_COUNT], double sto
         e->friction += strcmp(l->term[k].name, tl_zones_act.name) != 0 ? l->term[k].heat : 0;
 }
 
-/* The balance of the terms. `changed`: by something else than forces. */
+/* The balance of the terms. `changed`: by something else than the forces of a march. That is what a deleted block's
+ * contacts held, or another law of them holds, and what a relaxation does by its own inertia and stops. */
 static void balance(tl_ledger *l, bool first, bool changed)
 {
     tl_energy *e = &l->energy;
@@ -104,7 +105,7 @@ static void balance(tl_ledger *l, bool first, bool changed)
         largest = fmax(largest, fabs(gains[k]));
     }
     sum -= e->external;
-    if (changed && !first) { /* what a deleted block's contacts held, or another law of them holds */
+    if (changed) {
         e->external += sum - l->error;
         l->by_hand += sum - l->error;
         sum = l->error;
@@ -160,7 +161,7 @@ void tl_energy_close(tl_model *m)
     sum_booked(m, now);
     stored_now stored;
     const tl_energies own = ask_contributors(m, &stored);
-    const bool first = !l->started, changed = l->structure != m->structure || l->laws != m->laws;
+    const bool first = !l->started, edited = !first && (l->structure != m->structure || l->laws != m->laws);
     if (first) {
         note_overlaps(m, l);
         l->start_kinetic = now[TL_BOOK_KINETIC] - now[TL_BOOK_FIRST];
@@ -176,7 +177,7 @@ void tl_energy_close(tl_model *m)
     m->cycle->kinetic_before = now[TL_BOOK_MOTION0];
     l->given += own.given;
     note_terms(l, now, stored.contacts);
-    balance(l, first, changed);
+    balance(l, first, edited || m->relaxing);
     tl_balance_note(m);
 }
 

@@ -5,7 +5,8 @@
  *     g = (-e, -a x e, e, b x e)
  *
  * of their freedoms, and adds k g^T g to the stiffness K. Points that press, or pull, have kn A across the joint and
- * ks A along it. A field contact has the springs of its area at the centre of its pressure (secants.c has the same).
+ * ks A along it. So have those that bear nothing just now and would pull. A field contact has the springs of its
+ * area at the centre of its pressure (secants.c has the same).
  * An element adds its tangent (element/tangent.c). One that stands for what lies outside, as a quiet face, adds none.
  *
  * Freedoms are those of the centroid, and of the turn about the principal axes, times the root of mass or moment of
@@ -278,6 +279,14 @@ static void add_turn(vibration *v, const joint_at *c, double k, tl_vec3 e)
     add_row(v, k, &row);
 }
 
+/* Whether a point, at rest, resists small motions. */
+static bool resists(const vibration *v, const tl_law *law, size_t row)
+{
+    const tl_points_table *p = &v->m->detect->points;
+    const bool lost = p->flags[row] & (TL_POINT_OPEN | TL_POINT_APART);
+    return p->f_n[row] != 0 || (!lost && tl_law_may_pull(law, p->flags[row]));
+}
+
 static void add_patch(vibration *v, uint32_t contact, const joint_at *c, const tl_law *law)
 {
     const tl_contacts *contacts = &v->m->detect->contacts;
@@ -285,7 +294,7 @@ static void add_patch(vibration *v, uint32_t contact, const joint_at *c, const t
     const tl_vec3 n = contacts->facet[contact].last, e = tl_facing_aside(n), g = tl_v3_cross(n, e);
     for (size_t i = 0; i < contacts->point_count[contact]; i++) {
         const size_t row = tl_point_row(contacts, contact, i);
-        if (p->f_n[row] == 0)
+        if (!resists(v, law, row))
             continue;
         const tl_vec3 arm = tl_contact_point_arm(v->m, contact, i);
         const double ks = p->flags[row] & TL_POINT_SLIPPING ? 0 : law->ks * p->area[row];
@@ -301,7 +310,7 @@ static void add_field(vibration *v, uint32_t contact, const joint_at *c, const t
     const tl_press *press = &tl_press_row_of(v->m, contact)->press;
     const size_t row = tl_point_row(contacts, contact, TL_FIELD_SHEAR);
     const tl_vec3 n = contacts->facet[contact].last, e = tl_facing_aside(n), g = tl_v3_cross(n, e);
-    if (v->m->detect->points.f_n[row] == 0)
+    if (!resists(v, law, row))
         return;
     const tl_vec3 arm = tl_side_arm(v->m, tl_contact_sides(v->m, contact).a, press->point);
     const double ks = v->m->detect->points.flags[row] & TL_POINT_SLIPPING ? 0 : law->ks;

@@ -445,7 +445,8 @@ TL_INLINE slowing slowing_of(const body_group *g, size_t i)
 
 /* A kick may have two unequal halves, s and 1 - s of it. Then the works of all that changes a velocity by dv miss
  * m (2 s - 1) dv^2 / 2 of what the kinetic energy becomes. For forces, which hardly change in a step, that is next to
- * nothing. A damping that stops bodies takes what it makes more of it, dv^2 - dF^2 with dv = dF + dD. */
+ * nothing. A damping that stops bodies takes what it makes more of it, dv^2 - dF^2 with dv = dF + dD. Of the first
+ * kick, which is half of one, all of it is in TL_BOOK_FIRST. */
 TL_INLINE void book_uneven(chunk_work *work, size_t at, size_t i, const body_group *g)
 {
     slowing by_alpha = slowing_of(g, i);
@@ -517,7 +518,7 @@ TL_VECTORIZED static void book_lanes(chunk_work *restrict work, size_t first, co
     }
     for (size_t i = 0; damped && i < TL_LANES; i++)
         book_damping(work, first + i, i, g);
-    for (size_t i = 0; damped && work->until != work->after && i < TL_LANES; i++)
+    for (size_t i = 0; damped && work->until > 0 && work->until != work->after && i < TL_LANES; i++)
         book_uneven(work, first + i, i, g);
 }
 

@@ -31,17 +31,11 @@ static double between(double value, double most)
     return most > 0 ? fmin(fmax(value, 0), most) : fmax(fmin(value, 0), most);
 }
 
-/* Whether a point of that state may pull. */
-static bool may_pull(const tl_law *law, uint32_t flags)
-{
-    return law->pulls == TL_PULL_ANY || (law->pulls == TL_PULL_BONDED && !(flags & TL_POINT_FAILED));
-}
-
 static double normal_damping(const tl_law *law, const tl_damped_points *of, double rate, double before, size_t i)
 {
     const double force = of->f_n[i];
     const double damping = rate * between(force - before, -law->kn * of->area[i] * of->du_n[i]);
-    return force > 0 && !may_pull(law, of->flags[i]) ? fmax(damping, -force) : damping;
+    return force > 0 && !tl_law_may_pull(law, of->flags[i]) ? fmax(damping, -force) : damping;
 }
 
 /* N/m: by which the motion along the face is resisted. */

@@ -469,8 +469,9 @@ const tl_lua_topic tl_lua_model_topics[] = {
     {.name = "energy",
      .usage = "energy = model:energy()",
      .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "
-            "from the first step. After model:relax stored, potential and friction keep their meaning; the others also "
-            "hold what its own inertia and stops have given and taken.",
+            "from the first step. After model:relax stored, potential and friction keep their meaning; damping and "
+            "external also hold what its own inertia and stops have taken and given, so balance goes on from what it "
+            "was.",
      .title = "Fields of the energy",
      .verbs = energy_terms,
      .method = model_energy},

@@ -55,6 +55,12 @@ typedef struct tl_joint_min_area {
     tl_min_area_rule rule;
 } tl_joint_min_area;
 
+/* Whether a point of that state may pull. `flags`: TL_POINT_*. */
+static inline bool tl_law_may_pull(const tl_law *law, uint32_t flags)
+{
+    return law->pulls == TL_PULL_ANY || (law->pulls == TL_PULL_BONDED && !(flags & TL_POINT_FAILED));
+}
+
 /* Whether what presses has the force kn A u, or else whether the law tells of the energy it has. */
 static inline bool tl_law_is_linear(const tl_law *law)
 {

@@ -1047,7 +1047,7 @@ function Model:contact_area(options) end
 ---@field elements number held by elements, part of stored, J
 ---@field element_loss number turned to heat by elements until now, part of friction, J
 
---- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
+--- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; damping and external also hold what its own inertia and stops have taken and given, so balance goes on from what it was.
 ---
 ---     energy = model:energy()
 ---@return talus.EnergyResult

@@ -79,6 +79,28 @@ for _, damping in ipairs { { "none" }, { "viscous", { alpha = 20 } }, { "local",
     check.holds(damping[1] == "none" and energy.damping == 0 or energy.damping > 0.01, damping[1])
 end
 
+-- Small motions of a column whose joints hold, from velocities that are set: dampers of masses, joints and springs book all that they
+-- take, from the first step on, which is half a kick.
+for name, damp in pairs {
+    masses = function(m) m:damping("viscous", { alpha = 200 }) end,
+    both = function(m) m:damping("rayleigh", { ratio = 0.5, from = 5, to = 100 }) end,
+    joints = function(m) m:damping("dashpot", { ratio = 0.4, frequency = 100 }) end,
+    springs = function(m)
+        m:element("spring", { from = { 0.2, 0.2, 1.5 }, to = { 5, 3, 2 }, stiffness = 1e7, damping = 1e5 })
+    end,
+} do
+    model = talus.model { gravity = { 0, 0, 0 } }
+    for k = 0, 2 do
+        model:generate("box", { min = { 0, 0, k }, max = { 1 - 0.2 * k, 0.8, k + 1 }, density = DENSITY })
+    end
+    model:joint("*", "elastic", { kn = 1e9, ks = 5e8 })
+    model:blocks { id = 1 }:fix()
+    damp(model)
+    model:blocks { id = 3 }:set { velocity = { 1e-5, -2e-5, 1e-5 }, angular_velocity = { 2e-5, 1e-5, -1e-5 } }
+    -- Tolerance: points of the joints move with their walls by 1e-6 of a block.
+    check.holds(watch(model, 300) < 1e-6, "the balance of small motions damped at " .. name)
+end
+
 -- What damping takes out of bodies whose inertia is scaled is all there was, once they rest.
 for _, damping in ipairs { { "viscous", { alpha = 100 } }, { "local" }, { "kinetic" } } do
     model = talus.model { gravity = { 0, 0, -10 } }

@@ -161,6 +161,13 @@ model:generate("box", { min = { -1, 0, 2 }, max = { 0, 1, 5 }, density = 2500 })
 model:generate("box", { min = { -1, 1, 0 }, max = { 0, 2, 2.02 }, density = 2500 })
 model:generate("box", { min = { -1, 1, 2.02 }, max = { 0, 2, 5 }, density = 2500 })
 refused({ zmin = { quiet = true }, xmin = "free_field" }, "blocks at a free field lie in level rows")
+model = talus.model {} -- a side whose ground falls along it
+model:generate("box", { min = { 0, 0, 0 }, max = { 3, 2, 3 }, density = 2500 })
+model:generate("joint", { joint = "bed", dip = 0, dip_direction = 0, origin = { 0, 0, 1 } })
+model:generate("joint", { joint = "ground", dip = 20, dip_direction = 0, origin = { 1, 1, 2 } })
+model:blocks { above = { dip = 20, dip_direction = 0, origin = { 1, 1, 2 } } }:delete()
+model:joint("*", "elastic", { kn = 1e10, ks = 4e9 })
+refused({ zmin = { quiet = true }, xmin = "free_field" }, "corners between z = 1 and 2.36397 m, so its top or its foot slopes")
 model = talus.model {} -- a side that leans by 0.1 degrees
 model:generate("polyhedron", { density = 2500, vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 },
     { 1.7e-3, 0, 1 }, { 1, 0, 1 }, { 1, 1, 1 }, { 1.7e-3, 1, 1 } } })

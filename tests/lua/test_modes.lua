@@ -49,6 +49,31 @@ check.equal(#m:modes { count = 100 }, 4)
 local chain = m:modes { count = 1 }[1]
 check.near(chain.frequency, math.sqrt(1e9 / 2000) * 2 * math.sin(math.pi / 18) / (2 * math.pi), 1e-4)
 
+-- Joints that would pull hold without weight, too: a block on its joint sways, turns and swings as by hand.
+do
+    local W, D, H, KN, KS, DENSITY = 0.7, 1.1, 2.3, 3e9, 1.3e9, 2000
+    local light = talus.model { gravity = { 0, 0, 0 } }
+    light:generate("box", { min = { -3, -3, -1 }, max = { 3, 3, 0 }, density = DENSITY })
+    light:blocks():fix()
+    light:generate("box", { min = { -W / 2, -D / 2, 0 }, max = { W / 2, D / 2, H }, density = DENSITY })
+    light:joint("*", "coulomb_tensile", { kn = KN, ks = KS, friction = 30, cohesion = 1e6, tension = 1e6 })
+    light:cycle(1)
+    local expected = { math.sqrt(KN / (DENSITY * H)), math.sqrt(KS / (DENSITY * H)) } -- up and down, and about z
+    for _, b in ipairs { W, D } do -- sway and turn about the centroid: half of the sum of squares, and the root of what they differ by
+        local turn = (b * b + H * H) / 12
+        local slide, rock = KS / (DENSITY * H), (KN * b * b / 12 + KS * H * H / 4) / (DENSITY * H * turn)
+        local mean, apart = (slide + rock) / 2, math.sqrt((slide - rock) ^ 2 / 4 + slide * slide * H * H / (4 * turn))
+        expected[#expected + 1], expected[#expected + 2] = math.sqrt(mean - apart), math.sqrt(mean + apart)
+    end
+    table.sort(expected)
+    for k, mode in ipairs(light:modes { count = 6 }) do
+        check.near(2 * math.pi * mode.frequency / expected[k], 1, 1e-9)
+    end
+    light:joint("*", "coulomb", { kn = KN, ks = KS, friction = 30 })
+    light:cycle(1)
+    check.equal(light:modes { count = 6 }[6].frequency, 0) -- what cannot pull and does not press holds nothing
+end
+
 -- What nothing holds has a frequency of 0.
 local free = tower()
 free:generate("box", { min = { 5, 0, 0 }, max = { 6, 1, 1 }, density = 2000, group = "free" })

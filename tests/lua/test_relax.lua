@@ -138,6 +138,17 @@ do
     check.holds(b.cycles > a.cycles, "and it takes more steps")
 end
 
+-- A relaxation leaves the balance of energy as it was, so a run that follows tells of its own steps.
+do
+    local m = slope(50)
+    m:relax {}
+    check.near(m:energy().balance, 0, 1e-12)
+    m:blocks { fixed = false }:set { velocity = { 0, 0, 1e-4 } }
+    m:cycle(200)
+    check.holds(m:energy().kinetic > 0, "it moves")
+    check.near(m:energy().balance, 0, 1e-4)
+end
+
 -- What cannot be asked for.
 do
     local m = slope(60)

@@ -96,6 +96,18 @@ static int compare_faces(const void *a, const void *b)
     return x->row < y->row ? -1 : x->row > y->row;
 }
 
+/* Whether a face ends below and above in level edges: at another height there is no corner. */
+static bool is_level(const side_face *f)
+{
+    const double near = SAME_LEVEL * (f->high - f->low);
+    for (size_t k = 0; k < f->face->corner_count; k++) {
+        const double z = f->face->corners[k].z;
+        if (z - f->low > near && f->high - z > near)
+            return false;
+    }
+    return true;
+}
+
 /* Finds the faces of the list among the outer ones. */
 static tl_status find_faces(side *s)
 {
@@ -118,6 +130,12 @@ static tl_status find_faces(side *s)
                                    "face %u of block %u has the normal (%g, %g, %g): all faces of a side that is a "
                                    "free field are vertical and look one way",
                                    f->face + 1, f->block, f->normal.x, f->normal.y, f->normal.z);
+        else if (!is_level(&one))
+            status = s->host->fail(s->host, TL_E_GEOMETRY,
+                                   "block %u at the side has corners between z = %g and %g m, so its top or its foot "
+                                   "slopes: blocks at a free field lie in level rows; cut the side level, or make it "
+                                   "quiet",
+                                   f->block, one.low, one.high);
         else if (!(row[2] > 0 && row[3] > 0 && row[4] > 0))
             status =
                 s->host->fail(s->host, TL_E_ARGUMENT,
