@@ -92,7 +92,7 @@ static inline double check_random(uint64_t *state)
 }
 
 /* Of a number of cases how many are tried: all, or one in TALUS_TEST_SHARE. "./bootstrap test" tries one in ten, with --full one
- * in four (with sanitizers one in ten), and "./bootstrap soak" all. */
+ * in four (with sanitizers one in twenty), and "./bootstrap soak" all. */
 static inline int check_cases(int count)
 {
     const char *share = getenv("TALUS_TEST_SHARE");

@@ -1,9 +1,9 @@
-/* skyline.c - symmetric matrices stored row by row from the first entry to the diagonal.
+/* skyline.c - the lowest eigenvalues of a symmetric matrix that is kept within its skyline.
  *
- * Factor: A = L L^T, which fills nothing outside the skyline. Lowest eigenvalues by subspace iteration (Bathe and
- * Wilson, Int. J. Numer. Meth. Eng. 6, 1973): p vectors X are replaced by Y = A^-1 X, made orthonormal, Q; the
- * eigenvectors V of the small matrix Q^T A Q = (L^T Q)^T (L^T Q) give the next X = Q V. An error falls by lambda_k /
- * lambda_(p + 1) with each pass. One order of sums throughout: the same bits anywhere. */
+ * Subspace iteration (Bathe and Wilson, Int. J. Numer. Meth. Eng. 6, 1973): p vectors X are replaced by
+ * Y = A^-1 X, made orthonormal, Q. With B = L D^(1/2), so that A = B B^T, Q^T A Q = (B^T Q)^T (B^T Q) is a small
+ * matrix. Its eigenvectors V give the next X = Q V. An error falls by lambda_k / lambda_(p + 1) with each pass. One
+ * order of sums throughout: the same bits anywhere. */
 #include "base/skyline.h"
 
 #include "base/random.h"
@@ -22,16 +22,17 @@
 
 bool tl_skyline_make(tl_skyline *a, size_t size, size_t *first)
 {
-    *a = (tl_skyline){.size = size, .first = first, .start = malloc((size + 1) * sizeof *a->start)};
+    *a = (tl_skyline){.size = size,
+                      .first = first,
+                      .start = malloc((size + 1) * sizeof *a->start),
+                      .diagonal = calloc(size + 1, sizeof *a->diagonal)};
     size_t count = 0;
     for (size_t i = 0; a->start && i < size; i++) {
         a->start[i] = count;
-        count += i - first[i] + 1;
+        count += i - first[i];
     }
-    if (a->start)
-        a->start[size] = count;
     a->entry = calloc(count + 1, sizeof *a->entry);
-    return a->start && a->entry;
+    return a->start && a->entry && a->diagonal;
 }
 
 void tl_skyline_free(tl_skyline *a)
@@ -39,67 +40,24 @@ void tl_skyline_free(tl_skyline *a)
     free(a->first);
     free(a->start);
     free(a->entry);
+    free(a->diagonal);
     *a = (tl_skyline){.size = 0};
 }
 
-bool tl_skyline_factor(tl_skyline *a)
+/* y = D^(1/2) L^T x, of a factorised matrix. */
+static void multiply_transposed(const tl_skyline *a, const double *x, double *y)
 {
+    memcpy(y, x, a->size * sizeof *y);
     for (size_t i = 0; i < a->size; i++) {
-        double *row = a->entry + a->start[i];
-        const size_t first = a->first[i];
-        for (size_t j = first; j < i; j++) {
-            const double *other = a->entry + a->start[j];
-            double sum = row[j - first];
-            for (size_t k = first > a->first[j] ? first : a->first[j]; k < j; k++)
-                sum -= row[k - first] * other[k - a->first[j]];
-            row[j - first] = sum / other[j - a->first[j]];
-        }
-        double left = row[i - first];
-        for (size_t k = first; k < i; k++)
-            left -= row[k - first] * row[k - first];
-        if (!(left > 0))
-            return false;
-        row[i - first] = sqrt(left);
+        const double *row = a->entry + a->start[i];
+        for (size_t k = a->first[i]; k < i; k++)
+            y[k] += row[k - a->first[i]] * x[i];
     }
-    return true;
-}
-
-void tl_skyline_solve(const tl_skyline *l, double *x)
-{
-    for (size_t i = 0; i < l->size; i++) {
-        const double *row = l->entry + l->start[i];
-        for (size_t k = l->first[i]; k < i; k++)
-            x[i] -= row[k - l->first[i]] * x[k];
-        x[i] /= row[i - l->first[i]];
-    }
-    for (size_t i = l->size; i-- > 0;) {
-        const double *row = l->entry + l->start[i];
-        x[i] /= row[i - l->first[i]];
-        for (size_t k = l->first[i]; k < i; k++)
-            x[k] -= row[k - l->first[i]] * x[i];
-    }
-}
-
-/* y = L^T x. */
-static void multiply_transposed(const tl_skyline *l, const double *x, double *y)
-{
-    memset(y, 0, l->size * sizeof *y);
-    for (size_t i = 0; i < l->size; i++) {
-        const double *row = l->entry + l->start[i];
-        for (size_t k = l->first[i]; k <= i; k++)
-            y[k] += row[k - l->first[i]] * x[i];
-    }
+    for (size_t i = 0; i < a->size; i++)
+        y[i] /= sqrt(a->diagonal[i]);
 }
 
 /* ---------------------------------------------------------------- small matrices ---------- */
-
-static double dot(const double *a, const double *b, size_t n)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 /* Turns rows and columns p and q of h, and the columns of v, so that h[p][q] becomes 0. */
 static void rotate(double *h, double *v, size_t n, size_t p, size_t q)
@@ -187,11 +145,11 @@ static void make_orthonormal(subspace *s)
         double *at = s->x + k * s->n;
         for (int twice = 0; twice < 2; twice++)
             for (size_t j = 0; j < k; j++) {
-                const double by = dot(at, s->x + j * s->n, s->n);
+                const double by = tl_skyline_dot(at, s->x + j * s->n, s->n);
                 for (size_t i = 0; i < s->n; i++)
                     at[i] -= by * s->x[j * s->n + i];
             }
-        const double length = sqrt(dot(at, at, s->n));
+        const double length = sqrt(tl_skyline_dot(at, at, s->n));
         for (size_t i = 0; i < s->n && length > 0; i++)
             at[i] /= length;
     }
@@ -210,16 +168,16 @@ static void sort_values(subspace *s)
 }
 
 /* One pass. Whether the lowest `count` values stand. */
-static bool go_on(subspace *s, const tl_skyline *l, size_t count)
+static bool go_on(subspace *s, const tl_skyline *a, size_t count)
 {
     for (size_t k = 0; k < s->p; k++)
-        tl_skyline_solve(l, s->x + k * s->n);
+        tl_skyline_solve(a, s->x + k * s->n);
     make_orthonormal(s);
     for (size_t k = 0; k < s->p; k++)
-        multiply_transposed(l, s->x + k * s->n, s->y + k * s->n);
+        multiply_transposed(a, s->x + k * s->n, s->y + k * s->n);
     for (size_t i = 0; i < s->p; i++)
         for (size_t j = 0; j <= i; j++)
-            s->h[i * s->p + j] = s->h[j * s->p + i] = dot(s->y + i * s->n, s->y + j * s->n, s->n);
+            s->h[i * s->p + j] = s->h[j * s->p + i] = tl_skyline_dot(s->y + i * s->n, s->y + j * s->n, s->n);
     diagonalise(s->h, s->v, s->p);
     sort_values(s);
     memset(s->y, 0, s->p * s->n * sizeof *s->y);
@@ -237,16 +195,16 @@ static bool go_on(subspace *s, const tl_skyline *l, size_t count)
     return stands;
 }
 
-bool tl_skyline_lowest(const tl_skyline *l, size_t count, double *value, double *vector)
+bool tl_skyline_lowest(const tl_skyline *a, size_t count, double *value, double *vector)
 {
     subspace s = {.n = 0};
-    const bool made = subspace_make(&s, l->size, count);
+    const bool made = subspace_make(&s, a->size, count);
     for (int pass = 0; made && pass < PASSES; pass++)
-        if (go_on(&s, l, count))
+        if (go_on(&s, a, count))
             break;
     if (made) {
         memcpy(value, s.value, count * sizeof *value);
-        memcpy(vector, s.x, count * l->size * sizeof *vector);
+        memcpy(vector, s.x, count * a->size * sizeof *vector);
     }
     subspace_free(&s);
     return made;

@@ -265,3 +265,14 @@ double tl_check_nobodys(int column, bool other)
     double number = numbers[(size_t)column % (sizeof numbers / sizeof *numbers)];
     return other ? -1.25e-3 * number : number;
 }
+
+void tl_check_fill(const tl_check_batch *b, double *column, const double *from, double padding, double nobodys)
+{
+    size_t i = 0;
+    for (; from && i < b->count; i++)
+        column[i] = from[tl_check_entry(b, i)];
+    for (; from && i < b->padded; i++)
+        column[i] = padding;
+    for (; i < b->end; i++)
+        column[i] = nobodys;
+}

@@ -77,6 +77,20 @@ tl_vec3 tl_check_direction(uint64_t key);
 /* A number that fills what belongs to nobody, of a size that goes with the column; `other`: another one. */
 double tl_check_nobodys(int column, bool other);
 
+/* Which entries of columns a batch takes: `count` of those that `order` names (NULL: one after the other), from number
+ * `begin` on; then padding up to `padded`; then what is nobody's, up to `end`. */
+typedef struct tl_check_batch {
+    const size_t *order;
+    size_t begin, count, padded, end;
+} tl_check_batch;
+
+static inline size_t tl_check_entry(const tl_check_batch *b, size_t i)
+{
+    return b->order ? b->order[b->begin + i] : b->begin + i;
+}
+/* Fills a column of a batch; from NULL all of it is nobody's. */
+void tl_check_fill(const tl_check_batch *b, double *column, const double *from, double padding, double nobodys);
+
 /* A vector in `column` and the two columns behind it, of TL_CHECK_POINTS numbers each. */
 static inline tl_vec3 tl_check_vec(const double *column, size_t i)
 {

@@ -161,12 +161,9 @@ static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, si
     buffer now, before;
     double state[STATES_MOST];
     size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
-    for (size_t l = 0; l < MOST; l++)
-        for (int k = 0; k < COLUMNS; k++) {
-            size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
-            double rest = k >= MASS && k < OUT ? 1 : 0;
-            now.c[k][l] = l < count ? in->c[k][i] : l < padded ? rest : tl_check_nobodys(k, t->other);
-        }
+    const tl_check_batch of = {order, begin, count, padded, MOST};
+    for (int k = 0; k < COLUMNS; k++)
+        tl_check_fill(&of, now.c[k], in->c[k], k >= MASS && k < OUT ? 1 : 0, tl_check_nobodys(k, t->other));
     before = now;
     memcpy(state, t->state, sizeof state);
     if (call(t, &now, padded) != TL_OK)
@@ -181,7 +178,7 @@ static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, si
         tl_check_note(t->c, WRITES, "update() writes to the states, which is for begin()");
     for (size_t l = 0; l < count; l++)
         for (int k = OUT; k < COLUMNS; k++)
-            out->c[k][order ? order[begin + l] : begin + l] = now.c[k][l];
+            out->c[k][tl_check_entry(&of, l)] = now.c[k][l];
     return true;
 }
 

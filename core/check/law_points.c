@@ -23,20 +23,22 @@ typedef struct buffer {
     _Alignas(TL_ALIGN) uint32_t flags[MOST];
 } buffer;
 
-static void fill(const tl_check_law *law, const tl_check_points *in, const size_t *order, size_t begin, size_t count,
-                 size_t padded, uint32_t other, buffer *b)
+static void fill(const tl_check_law *law, const tl_check_points *in, const tl_check_batch *of, uint32_t other,
+                 buffer *b)
 {
-    for (size_t l = 0; l < padded + GUARD; l++) {
-        size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
-        for (int k = 0; k < COLUMNS; k++) {
-            int state = k - TL_AT_STATE;
-            bool beyond = state >= (int)law->columns, energy = k >= TL_AT_STORED && state < 0;
-            uint32_t what = l >= padded ? TL_OTHER_BEHIND : beyond ? TL_OTHER_STATES : energy ? TL_OTHER_ENERGIES : 0;
-            double padding = state >= 0 ? law->initial[state % TL_STATE_COLUMNS] : k == TL_AT_NORMAL + 2 ? 1.0 : 0;
-            b->c[k][l] = what ? tl_check_nobodys(k, (other & what) != 0) : l < count ? in->c[k][i] : padding;
-        }
-        b->flags[l] = l >= padded ? UNTOUCHED_FLAGS : l < count ? in->flags[i] : 0;
+    const tl_check_batch inside = {.end = of->padded};
+    for (int k = 0; k < COLUMNS; k++) {
+        const int state = k - TL_AT_STATE;
+        const bool beyond = state >= (int)law->columns, energy = k >= TL_AT_STORED && state < 0;
+        const uint32_t what = beyond ? TL_OTHER_STATES : energy ? TL_OTHER_ENERGIES : 0;
+        const double padding = state >= 0 ? law->initial[state % TL_STATE_COLUMNS] : k == TL_AT_NORMAL + 2 ? 1.0 : 0;
+        tl_check_fill(of, b->c[k], what ? NULL : in->c[k], padding,
+                      tl_check_nobodys(k, (other & TL_OTHER_BEHIND) != 0));
+        if (what)
+            tl_check_fill(&inside, b->c[k], NULL, 0, tl_check_nobodys(k, (other & what) != 0));
     }
+    for (size_t l = 0; l < of->end; l++)
+        b->flags[l] = l >= of->padded ? UNTOUCHED_FLAGS : l < of->count ? in->flags[tl_check_entry(of, l)] : 0;
 }
 
 static const char *find_overwritten(const tl_check_law *law, const buffer *now, const buffer *before, size_t padded)
@@ -71,10 +73,11 @@ void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_po
     size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
     buffer now, before;
     double *state[2 * TL_STATE_COLUMNS];
-    fill(law, in, order, begin, count, padded, call->other, &now);
+    const tl_check_batch of = {order, begin, count, padded, padded + GUARD};
+    fill(law, in, &of, call->other, &now);
     for (int k = 0; k < COLUMNS; k++)
-        memcpy(before.c[k], now.c[k], (padded + GUARD) * sizeof now.c[k][0]);
-    memcpy(before.flags, now.flags, (padded + GUARD) * sizeof now.flags[0]);
+        memcpy(before.c[k], now.c[k], of.end * sizeof now.c[k][0]);
+    memcpy(before.flags, now.flags, of.end * sizeof now.flags[0]);
     tl_law_batch batch = tl_law_batch_of(now.c[0], MOST, now.flags, state, 2 * TL_STATE_COLUMNS);
     batch.count = (uint32_t)padded;
     batch.dt = in->dt;
@@ -87,7 +90,7 @@ void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_po
     call->overwrote = find_overwritten(law, &now, &before, padded);
     call->padding = padding_carries(&now, count, padded, !call->no_energies);
     for (size_t l = 0; l < count; l++) {
-        size_t i = order ? order[begin + l] : begin + l;
+        const size_t i = tl_check_entry(&of, l);
         for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
             out->c[k][i] = k - TL_AT_STATE < (int)law->columns ? now.c[k][l] : 0;
         out->flags[i] = now.flags[l];

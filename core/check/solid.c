@@ -174,19 +174,16 @@ static size_t end_of(size_t padded)
     return padded < ZONES ? padded + GUARD : MOST;
 }
 
-static void fill(const trial *t, const zones *in, const size_t *order, size_t begin, size_t count, size_t padded,
-                 buffer *b)
+static void fill(const trial *t, const zones *in, const tl_check_batch *of, buffer *b)
 {
-    for (size_t l = 0; l < end_of(padded); l++) {
-        size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
-        for (int k = 0; k < COLUMNS; k++) {
-            int state = k - TL_ZONE_AT_STATE;
-            bool own = l < padded && state < (int)t->columns && k != TL_ZONE_AT_STORED && k != TL_ZONE_AT_DISSIPATED;
-            double padding = state >= 0 && own ? t->initial[state] : k == TL_ZONE_AT_EXTENT ? 1 : 0;
-            b->c[k][l] = own ? (l < count ? in->c[k][i] : padding) : tl_check_nobodys(k, t->other);
-        }
-        b->flags[l] = l < count ? in->flags[i] : 0;
+    for (int k = 0; k < COLUMNS; k++) {
+        const int state = k - TL_ZONE_AT_STATE;
+        const bool own = state < (int)t->columns && k != TL_ZONE_AT_STORED && k != TL_ZONE_AT_DISSIPATED;
+        const double padding = state >= 0 && own ? t->initial[state] : k == TL_ZONE_AT_EXTENT ? 1 : 0;
+        tl_check_fill(of, b->c[k], own ? in->c[k] : NULL, padding, tl_check_nobodys(k, t->other));
     }
+    for (size_t l = 0; l < of->end; l++)
+        b->flags[l] = l < of->count ? in->flags[tl_check_entry(of, l)] : 0;
 }
 
 /* Sees to it that nothing has been written that is not the solid's. */
@@ -212,10 +209,11 @@ static bool call_some(trial *t, const zones *in, zones *out, const size_t *order
     buffer now, before;
     double *state[2 * TL_SOLID_COLUMNS];
     size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
-    fill(t, in, order, begin, count, padded, &now);
+    const tl_check_batch of = {order, begin, count, padded, end_of(padded)};
+    fill(t, in, &of, &now);
     for (int k = 0; k < COLUMNS; k++)
-        memcpy(before.c[k], now.c[k], end_of(padded) * sizeof now.c[k][0]);
-    memcpy(before.flags, now.flags, end_of(padded) * sizeof now.flags[0]);
+        memcpy(before.c[k], now.c[k], of.end * sizeof now.c[k][0]);
+    memcpy(before.flags, now.flags, of.end * sizeof now.flags[0]);
     tl_solid_batch batch = tl_solid_batch_of(now.c[0], MOST, now.flags, state, 2 * TL_SOLID_COLUMNS);
     batch.count = (uint32_t)padded;
     batch.dt = t->stands ? 0 : DT;
@@ -230,7 +228,7 @@ static bool call_some(trial *t, const zones *in, zones *out, const size_t *order
                       tl_report_text(&report, status));
     check_writes(t, &now, &before, padded);
     for (size_t l = 0; l < count; l++) {
-        size_t i = order ? order[begin + l] : begin + l;
+        const size_t i = tl_check_entry(&of, l);
         for (int k = TL_ZONE_AT_STRESS; k < TL_ZONE_AT_STATE + (int)t->columns; k++)
             out->c[k][i] = now.c[k][l];
         out->flags[i] = now.flags[l];

@@ -486,7 +486,7 @@ static tl_status find(vibration *v, size_t count, tl_modes *out)
     count = count < v->size ? count : v->size;
     double *value = malloc(count * sizeof *value), *vector = malloc(count * v->size * sizeof *vector);
     tl_status status = TL_OK;
-    if (!tl_skyline_factor(&v->k))
+    if (tl_skyline_factor(&v->k, 0) > 0)
         status = tl_fail(&v->m->error, TL_E_NUMERIC, "modes: stiffnesses and masses are too far apart in size");
     else if (!value || !vector || !make_result(v, count, out) || !tl_skyline_lowest(&v->k, count, value, vector))
         status = tl_fail_memory(&v->m->error);

@@ -2,12 +2,18 @@
 -- script ends with exit status 1 and says where.
 local check = {}
 
--- "./bootstrap test" tries one case in ten, with --full one in four (with sanitizers one in ten), and "./bootstrap soak" all.
+-- "./bootstrap test" tries one case in ten, with --full one in four (with sanitizers one in twenty), and "./bootstrap soak" all.
 local SHARE = tonumber(os.getenv "TALUS_TEST_SHARE" or 1)
 
 -- Of a number of cases how many are tried.
 function check.cases(count)
     return math.max(1, count // SHARE)
+end
+
+-- Of cases that are chosen, and not at random: all, or the first where one in ten of random ones is tried, or fewer (with
+-- sanitizers, and in the quick tests).
+function check.few(list)
+    return SHARE < 10 and list or { list[1] }
 end
 
 -- Of a list of cases those that are tried.

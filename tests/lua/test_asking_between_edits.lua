@@ -1,5 +1,6 @@
 -- Asking changes nothing: a model whose contacts were asked for after every edit, in whatever order the layout of contacts
 -- then has, goes on to the same bits as one that nobody has asked.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local talus = require "talus"
 

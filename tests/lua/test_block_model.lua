@@ -1,4 +1,5 @@
 -- Block models in JSON: what is written is read back, and every kind of damaged file is refused.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

@@ -1,4 +1,5 @@
 -- A bolted roof layer of zones that yield: bolts bear what statics ask, and the roof comes down less.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

@@ -1,5 +1,6 @@
 -- Damping of contacts: it takes energy only and all of it is in the ledger, it never pulls what cannot pull, it does not depend on
 -- the kind of contact, the law, zones, axes or threads, and steps heed it.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

@@ -10,7 +10,7 @@ local CASES = {
     { { 0.6, 0.7, 1.5 }, { 0.3, 0.09 }, { jrc = 10.5, jcs = 8e7, phi_r = 30, kn = 1.54e8, ks = 1.34e8, vm = 1e-3 } },
     { { 0.43, 0.945, 0.31 }, { 0.768, 0 }, { jrc = 17.25, jcs = 4.822e7, phi_r = 31.85, kn = 1.037e8, ks = 9.353e7, vm = 9.704e-5 } },
 }
-for number, case in ipairs(CASES) do
+for number, case in ipairs(check.few(CASES)) do
     local half, velocity, joint = table.unpack(case)
     local model = talus.model { gravity = { 0, 0, -9.81 } }
     model:generate("box", { min = { -6, -6, -2 }, max = { 6, 6, 0 }, density = 2500, group = "floor" })
@@ -34,7 +34,7 @@ end
 -- heat is what there was.
 math.randomseed(3)
 local R = math.random
-for number = 1, 24 do
+for number = 1, check.cases(24) do
     local half = { 0.2 + 0.8 * R(), 0.2 + 0.8 * R(), 0.3 + 1.5 * R() }
     local kn, weight = 10 ^ (7.5 + 2 * R()), 2500 * 9.81 * half[3] -- Pa/m, Pa
     local law, joint = "barton_bandis", nil

@@ -1,5 +1,6 @@
 -- The stable step with damping of contacts beside elements that it leaves alone: stable at all of it, unstable far above it,
 -- as long as the formula says, and not shorter by what springs and bolts would ask for if they were damped.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

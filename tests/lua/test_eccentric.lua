@@ -1,4 +1,5 @@
 -- Loads beside the middle: their work has a part of the turn, and bonds break where the outermost fibre has their strength.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local talus = require "talus"
 

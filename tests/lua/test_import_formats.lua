@@ -1,5 +1,6 @@
 -- The generator "import" gives the blocks of random models back out of every format that it reads: with objects and faces in any
 -- order, faces turned, other units, and vertices off by up to `weld`; a vault rounded to a millimetre comes in and meets flush.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 local files = require "import_files"

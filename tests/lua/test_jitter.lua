@@ -1,5 +1,6 @@
 -- Walls, arches and domes whose stones come from a file and are a little off stand or fall as those that fit, with their thrust.
 -- tests/verify/long/jitter.lua does the same with more.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local jitter_verdicts = require "jitter_verdicts"
 

@@ -1,5 +1,6 @@
 -- Steps that have no meaning end with a sentence: places that would be no numbers, blocks that would fly off, overlaps that
 -- no contact can part. The model is as usable as before, and the same step fails again.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

@@ -1,5 +1,6 @@
 -- Vaults and domes from files of OBJ, PLY and JSON to their verdict, with corners off: what stands by limit analysis stands, with
 -- the thrust of the exact assembly, and what falls falls.
+-- program only: the models are the same ones with a stock Lua.
 package.path = "tests/lua/?.lua;" .. package.path -- run in the source root
 local check = require "check"
 local masonry = require "masonry"

@@ -1,4 +1,5 @@
 -- The example of histories and pictures: its files, and what they tell of the wedge.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 
 local folder = string.format("%s/monitor_%s", assert(os.getenv("TALUS_TEST_TMP")), tostring({}):match("0x(%x+)") or "0")

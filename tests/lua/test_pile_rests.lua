@@ -1,5 +1,6 @@
 -- A pile of irregular blocks, which touch by edges and vertices as much as by faces, comes to rest: nothing goes on
 -- moving between two states of a contact. Then contacts stand as they are, and forces stay.
+-- program only: the models are the same ones with a stock Lua.
 package.path = "tests/bench/?.lua;" .. package.path
 local check = require "check"
 local pile = require "pile"

@@ -1,4 +1,5 @@
 -- An undamped column of four blocks that a record rocks: the balance is of second order in the step, elements included.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

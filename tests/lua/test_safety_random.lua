@@ -1,5 +1,6 @@
 -- Factors of safety of random wedges and slopes: limit equilibrium where it holds, and no difference by units, place, attitude, order or
 -- threads. tests/verify/long/random_factors.lua tries many more.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local models = require "safety_models"
 local shapes = require "shapes"

@@ -1,4 +1,5 @@
 -- Factors of safety of cut rock: of a model that has settled as of one that is as cut, at any stiffness, beside chattering slivers.
+-- program only: the models are the same ones with a stock Lua.
 package.path = "scripts/?.lua;" .. package.path -- run in the source root
 local check = require "check"
 local slope = require "examples.slope"
@@ -8,7 +9,7 @@ local talus = require "talus"
 
 -- The slope of 49 blocks has one factor at any stiffness, as cut or settled: soft joints are made stiffer, and begin as cut.
 local WEDGE = math.tan(math.rad(30)) / math.tan(math.rad(27.14))
-for _, kn in ipairs { 1e7, 1e8 } do
+for _, kn in ipairs(check.few { 1e7, 1e8 }) do
     for _, settled in ipairs { false, true } do
         local model = slope.build(30)
         model:joint("*", { kn = kn, ks = kn })

@@ -1,5 +1,6 @@
 -- Blocks that are taken as fitting: without force, under any law, through whatever is done to the model after it; and what
 -- stands and falls is what does so where blocks fit exactly.
+-- program only: the models are the same ones with a stock Lua.
 package.path = "tests/lua/?.lua;" .. package.path -- run in the source root
 local check = require "check"
 local jittered = require "jittered"

@@ -8,7 +8,7 @@ local verdicts = require "verdicts"
 local folder = assert(os.getenv "TALUS_TEST_TMP")
 
 -- tests/verify/long/verdicts.lua tries many more.
-for seed = 1, 24 do
+for seed = 1, check.cases(24) do
     check.equal(verdicts.stands(seed), nil)
     check.equal(verdicts.slides(seed), nil)
     check.equal(verdicts.cuts(seed), nil)

@@ -3,7 +3,8 @@
 --
 --     LD_PRELOAD=memory_failure.so talus tests/memory/out_of_memory.lua [threads=2] [every=1] [leave=N] [only=NAME]
 --
--- `every`: of allocations beyond the first `leave` of a call only each so many is let fail, and of these one in TALUS_TEST_SHARE.
+-- `every`: of allocations beyond the first `leave` of a call only each so many is let fail; of these, and of the first ones beyond
+-- eight, one in TALUS_TEST_SHARE.
 package.cpath = os.getenv "TALUS_TEST_MEMORY" .. "/?.so;" .. package.cpath
 local talus = require "talus"
 local memory = require "memory_failure"
@@ -15,7 +16,8 @@ for _, text in ipairs(arg) do
     assert(options[key], "unknown option " .. text)
     options[key] = value
 end
-local THREADS, EVERY, LEAVE = tonumber(options.threads), tonumber(options.every) * (os.getenv "TALUS_TEST_SHARE" or 1), tonumber(options.leave)
+local SHARE = os.getenv "TALUS_TEST_SHARE" or 1
+local THREADS, EVERY, LEAVE = tonumber(options.threads), options.every * SHARE, math.max(8, options.leave // SHARE)
 local TMP = os.getenv "TALUS_TEST_TMP" .. "/out_of_memory" .. THREADS
 
 -- A mesh of two layers.

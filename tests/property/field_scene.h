@@ -6,13 +6,6 @@
 #include "narrow/coarse_test.h"
 #include "narrow/field.h"
 
-/* How many random cases are made, of those that an optimised build makes. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CASES(count) ((count) / 10)
-#else
-#define CASES(count) (count)
-#endif
-
 /* How far outside, relative to the size, a face lies that cannot meet a block. */
 #define NEAR 1e-3
 

@@ -59,7 +59,7 @@ TEST(a_mesh_with_borders_is_all_of_the_field)
 {
     const tl_mesh_inner inner = {0};
     int meshes = 0, cases = 0, stand = 0;
-    for (uint64_t k = 1; k <= CASES(2000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(2000); k++) {
         uint64_t seed = k + 31000;
         tl_field_mesh mesh = {0};
         static scene s;
@@ -90,7 +90,7 @@ TEST(a_mesh_with_borders_is_all_of_the_field)
         free_scene(&s);
     }
     printf("  %d cases, %d meshes, which stand at %d places\n", cases, meshes, stand);
-    CHECK(meshes > CASES(1500) && stand > 2 * meshes);
+    CHECK(meshes > check_cases(1500) && stand > 2 * meshes);
 }
 
 TEST_MAIN(RUN(a_mesh_with_borders_is_all_of_the_field))

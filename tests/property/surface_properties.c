@@ -5,13 +5,6 @@
 #include "narrow/patch.h"
 #include "narrow/surface.h"
 
-/* How many random cases are made, of those that an optimised build makes. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CASES(count) ((count) / 10)
-#else
-#define CASES(count) (count)
-#endif
-
 /* Sums over polygons. */
 typedef struct sums {
     double area, pressure;
@@ -84,7 +77,7 @@ TEST(field_polygons_are_those_that_are_integrated)
 {
     int cases = 0;
     double worst = 0;
-    for (uint64_t k = 1; k <= CASES(3000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(3000); k++) {
         uint64_t seed = k;
         static scene_pair pair;
         pair = scene_pair_of(random_shape(&seed), random_shape(&seed), scene_any_turn(&seed),
@@ -115,13 +108,13 @@ TEST(field_polygons_are_those_that_are_integrated)
         scene_pair_free(&pair);
     }
     printf("  %d cases, off by %.1e at the most\n", cases, worst);
-    CHECK(cases > CASES(2000));
+    CHECK(cases > check_cases(2000));
 }
 
 TEST(a_patch_has_the_area_of_its_points)
 {
     int cases = 0;
-    for (uint64_t k = 1; k <= CASES(3000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(3000); k++) {
         uint64_t seed = k + 40000;
         static scene_pair pair;
         double tilt = scene_between(&seed, -4, -2.6), z = scene_between(&seed, -1e-3, 1e-3);
@@ -158,7 +151,7 @@ TEST(a_patch_has_the_area_of_its_points)
         scene_pair_free(&pair);
     }
     printf("  %d patches\n", cases);
-    CHECK(cases > CASES(1500));
+    CHECK(cases > check_cases(1500));
 }
 
 TEST_MAIN(RUN(field_polygons_are_those_that_are_integrated), RUN(a_patch_has_the_area_of_its_points))

@@ -59,6 +59,7 @@ PUBLIC = {
     "distributions.h": {"elementary.h", "types.h", "vmath.h"},
     "csv.h": {"number.h"},
     "poles.h": {"csv.h", "distributions.h", "kit.h"},
+    "skyline.h": set(),
     "verdict.h": {"types.h", "plugin.h"},
     "watch.h": {"types.h", "plugin.h"},
     "settings.h": {"types.h", "plugin.h"},
@@ -79,7 +80,7 @@ PUBLIC = {
 }
 PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
                   "talus/kit.h", "talus/solid_kit.h", "talus/solid_returns.h", "talus/number.h", "talus/text.h",
-                  "talus/distributions.h", "talus/csv.h", "talus/poles.h"}
+                  "talus/distributions.h", "talus/csv.h", "talus/poles.h", "talus/skyline.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"

@@ -2,7 +2,8 @@
 """The pictures of docs/examples.md and of README.md, of the pages that the examples and scripts/tools/large_slope.lua write.
 
     pictures.py [NAME...]            writes them anew, all or those named (fig2, tunnel, tunnel_section, slope, slope_section, large_slope)
-    pictures.py --check [NAME...]    compares them with those that are there; 1 and their names where they differ
+    pictures.py --check [NAME...]    compares them with those that are there; 1 and their names where they differ. Without names, one
+                                     in TALUS_TEST_SHARE of all
 
 The large slope, which takes a minute, is made and compared when it is named. Runs the examples in a folder of its own, opens each page in Chromium and saves its image (talus.makeImage). Pictures are drawn by SwiftShader,
 in software, and text in DejaVu Sans, which comes with Debian's Chromium: the same on all machines that have it.
@@ -91,7 +92,8 @@ def main():
     unknown = [name for name in given.names if name not in PICTURES]
     if unknown:
         parser.error(f"there is no picture {', '.join(unknown)}; there are {', '.join(PICTURES)}")
-    names = given.names or [name for name in PICTURES if name not in SLOW]
+    share = int(os.environ.get("TALUS_TEST_SHARE", 1)) if given.check else 1
+    names = given.names or [name for name in PICTURES if name not in SLOW][::share]
     if not program():
         required = os.environ.get("TALUS_BROWSER") == "required"
         print("pictures.py: no Chromium, so no pictures were made" + (", which is required here" if required else ": skipped"))

@@ -31,6 +31,9 @@
 #define ROUNDS 10
 /* Tolerance: square of the last turn, rad2: the next one would be of its size. Test: lua/test_liner. */
 #define TURNED 1e-18
+/* Tolerance: pivot over the entry of the diagonal that it comes from, below which it is rounding. Test:
+ * lua/test_liner. */
+#define NO_PIVOT 1e-11
 
 static tl_vec3 column(const double *const of[3], uint32_t i)
 {
@@ -45,7 +48,7 @@ typedef struct layout {
     size_t entries;
     uint16_t node[CORNERS], side[CORNERS], freedom[CORNERS];
     double sign[CORNERS];
-    uint32_t first[FREEDOMS];
+    size_t first[FREEDOMS];
 } layout;
 
 static uint32_t side_key(const layout *l, uint32_t corner)
@@ -139,7 +142,7 @@ static void *carve(unsigned char *block, size_t *at, size_t count, size_t size)
 }
 
 /* Gives the lists of a shell their places. */
-static size_t spread(shell *s, unsigned char *block, const layout *l, uint32_t **first, size_t **row)
+static size_t spread(shell *s, unsigned char *block, const layout *l)
 {
     size_t at = 0;
     carve(block, &at, 1, sizeof *s);
@@ -156,8 +159,8 @@ static size_t spread(shell *s, unsigned char *block, const layout *l, uint32_t *
     s->q = carve(block, &at, l->freedoms, sizeof *s->q);
     s->d = carve(block, &at, l->corners, sizeof *s->d);
     s->force = carve(block, &at, l->corners, sizeof *s->force);
-    *first = carve(block, &at, l->freedoms, sizeof **first);
-    *row = carve(block, &at, l->freedoms, sizeof **row);
+    s->matrix.first = carve(block, &at, l->freedoms, sizeof *s->matrix.first);
+    s->matrix.start = carve(block, &at, l->freedoms, sizeof *s->matrix.start);
     s->matrix.diagonal = carve(block, &at, l->freedoms, sizeof(double));
     s->matrix.entry = carve(block, &at, l->entries, sizeof(double));
     return at;
@@ -167,10 +170,8 @@ size_t shell_bytes(const tl_element_batch *b, uint32_t e, const double *number)
 {
     layout l;
     shell s;
-    uint32_t *first;
-    size_t *row;
     lay(&l, b, e, number);
-    return spread(&s, NULL, &l, &first, &row);
+    return spread(&s, NULL, &l);
 }
 
 /* Facets have the places of their nodes: those of the first corner at each. */
@@ -191,24 +192,21 @@ shell *shell_open(void *memory, const tl_element_batch *b, uint32_t e, const dou
     if (s->laid)
         return s;
     layout l;
-    uint32_t *first;
-    size_t *row, at = 0;
+    size_t at = 0;
     lay(&l, b, e, number);
-    spread(s, memory, &l, &first, &row);
+    spread(s, memory, &l);
     s->corners = l.corners;
     s->nodes = l.nodes;
     memcpy(s->node, l.node, l.corners * sizeof *s->node);
     memcpy(s->side, l.side, l.corners * sizeof *s->side);
     memcpy(s->freedom, l.freedom, l.nodes * sizeof *s->freedom);
     memcpy(s->sign, l.sign, l.corners * sizeof *s->sign);
-    memcpy(first, l.first, l.freedoms * sizeof *first);
+    memcpy(s->matrix.first, l.first, l.freedoms * sizeof *l.first);
     for (uint32_t i = 0; i < l.freedoms; i++) {
-        row[i] = at;
-        at += i - first[i];
+        s->matrix.start[i] = at;
+        at += i - l.first[i];
     }
-    s->matrix.count = l.freedoms;
-    s->matrix.first = first;
-    s->matrix.at = row;
+    s->matrix.size = l.freedoms;
     make_facets(s, b, e);
     s->laid = true;
     s->factorised = false;
@@ -273,14 +271,14 @@ static void add_entry(shell *s, uint32_t i, uint32_t j, double value)
     if (i == j)
         s->matrix.diagonal[i] += value;
     else if (i > j)
-        s->matrix.entry[s->matrix.at[i] + (j - s->matrix.first[i])] += value;
+        s->matrix.entry[s->matrix.start[i] + (j - s->matrix.first[i])] += value;
 }
 
 static void assemble(shell *s, const double *weight, const shell_material *of)
 {
-    const uint32_t last = s->matrix.count - 1;
-    memset(s->matrix.entry, 0, (s->matrix.at[last] + (last - s->matrix.first[last])) * sizeof(double));
-    memset(s->matrix.diagonal, 0, s->matrix.count * sizeof(double));
+    const size_t last = s->matrix.size - 1;
+    memset(s->matrix.entry, 0, (s->matrix.start[last] + (last - s->matrix.first[last])) * sizeof(double));
+    memset(s->matrix.diagonal, 0, s->matrix.size * sizeof(double));
     for (uint32_t t = 0; t < s->corners / 3; t++) {
         double matrix[FACET_FREEDOMS][FACET_FREEDOMS];
         uint32_t at[FACET_FREEDOMS];
@@ -313,7 +311,7 @@ void shell_hold(shell *s, const tl_element_batch *b, uint32_t e, const shell_mat
     memcpy(s->torn, torn, s->corners / 3);
     find_parts(s, b, e);
     assemble(s, b->weight + b->start[e], of);
-    skyline_factorise(&s->matrix);
+    (void)tl_skyline_factor(&s->matrix, NO_PIVOT);
     s->factorised = true;
 }
 
@@ -427,7 +425,7 @@ double shell_solve(shell *s, const tl_element_batch *b, uint32_t e, const shell_
     const uint32_t first = b->start[e];
     double energy = 0;
     follow(s, b, e);
-    memset(s->q, 0, s->matrix.count * sizeof *s->q);
+    memset(s->q, 0, s->matrix.size * sizeof *s->q);
     for (uint32_t c = 0; c < s->corners; c++) {
         const shell_part *p = part_of(s, c);
         double k[2], *q = &s->q[s->freedom[s->node[c]]];
@@ -438,7 +436,7 @@ double shell_solve(shell *s, const tl_element_batch *b, uint32_t e, const shell_
         q[1] += pull.y;
         q[2] += pull.z;
     }
-    skyline_solve(&s->matrix, s->q);
+    tl_skyline_solve(&s->matrix, s->q);
     for (uint32_t c = 0; c < s->corners; c++) {
         shell_part *p = &s->of[s->part[s->node[c]]];
         double k[2];

@@ -3,10 +3,10 @@
 #define LINER_SHELL_H
 
 #include "facet.h"
-#include "skyline.h"
 
 #include <stdbool.h>
 #include <talus/plugin.h>
+#include <talus/skyline.h>
 
 /* How a corner is held by the rock: not at all, by the bond, or as it presses on it. */
 enum { SHELL_FREE, SHELL_BONDED, SHELL_PRESSED };
@@ -31,7 +31,7 @@ typedef struct shell_part {
 typedef struct shell {
     uint32_t corners, nodes;
     bool laid, factorised;
-    skyline matrix;
+    tl_skyline matrix;
     uint16_t *node;                      /* [corners] node of the shell */
     uint16_t *side;                      /* [corners] freedom of the side across a corner */
     uint16_t *freedom;                   /* [nodes] first freedom of a node */
