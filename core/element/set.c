@@ -178,3 +178,21 @@ bool tl_elements_hold_states(struct tl_elements *e, uint32_t of_nodes, uint32_t 
     t->state_columns += count;
     return true;
 }
+
+bool tl_nodes_hold_normals(tl_node_table *n)
+{
+    bool enough = true;
+    for (int k = 0; k < 3; k++)
+        enough = enough && TL_COLUMN_NEED(&n->table, n, outward[k], 0) && TL_COLUMN_NEED(&n->table, n, normal[k], 0);
+    return enough;
+}
+
+bool tl_nodes_hold_zones(tl_node_table *n)
+{
+    return TL_COLUMN_NEED(&n->table, n, point, 0) && TL_COLUMN_NEED(&n->table, n, share, 0);
+}
+
+bool tl_nodes_hold_damping(tl_node_table *n)
+{
+    return TL_COLUMN_NEED(&n->table, n, c, 0);
+}

@@ -4,6 +4,7 @@
 #include "contact/store.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
+#include "element/memory.h"
 #include "element/walk.h"
 #include "geometry/make.h"
 #include "model/seats.h"
@@ -77,7 +78,7 @@ tl_memory tl_model_memory(const tl_model *m)
         tl_segments_walk(m->segments, &walk);
     if (m->elements) {
         tl_elements_walk(m->elements, &walk);
-        memory.other += sizeof *m->elements + m->elements->set_capacity * sizeof *m->elements->set;
+        memory.elements += tl_elements_bytes(m->elements);
     }
     if (m->cycle) {
         tl_cycle_walk(m->cycle, &walk);

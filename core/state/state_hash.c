@@ -365,6 +365,17 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
 
 /* ---------------------------------------------------------------- elements --------------- */
 
+/* What only some nodes have. */
+static void hash_node(tl_hash *hash, const tl_node_table *n, size_t row)
+{
+    const tl_vec3 outward = tl_node_outward(n, row);
+    const double *share = n->share ? n->share[row] : NULL;
+    if (tl_v3_norm2(outward) > 0)
+        tl_hash_numbers(hash, &outward.x, 3);
+    if (share && (share[0] != 0 || share[1] != 0 || share[2] != 0 || share[3] != 0))
+        tl_hash_numbers(hash, share, 4);
+}
+
 /* By name: which numbers kinds, groups and states have depends on what was there before. */
 static void hash_elements(tl_hash *hash, const tl_model *m)
 {
@@ -383,6 +394,8 @@ static void hash_elements(tl_hash *hash, const tl_model *m)
         hash_rows(hash, &t->table, row, row + 1);
     }
     hash_rows(hash, &e->nodes.table, 0, e->nodes.table.rows);
+    for (size_t row = 0; row < e->nodes.table.rows; row++)
+        hash_node(hash, &e->nodes, row);
     hash_rows(hash, &e->steady.table, 0, e->steady.table.rows);
 }
 
