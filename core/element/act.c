@@ -71,8 +71,8 @@ TL_VECTORIZED static void move_tile(tl_node_table *n, size_t row, uint32_t count
 TL_VECTORIZED static void turn_tile(const tl_node_table *n, size_t row, uint32_t count, const tile *t,
                                     tl_element_lanes *lanes, size_t i)
 {
-    const double *restrict ox = n->normal[0] + row, *restrict oy = n->normal[1] + row;
-    const double *restrict oz = n->normal[2] + row;
+    double *const *own = tl_node_normals(n);
+    const double *restrict ox = own[0] + row, *restrict oy = own[1] + row, *restrict oz = own[2] + row;
     for (int k = 0; k < 3; k++) {
         const double *restrict x = t->r[k][0], *restrict y = t->r[k][1], *restrict z = t->r[k][2];
         double *restrict normal = lanes->normal[k] + i;
@@ -104,7 +104,7 @@ static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes
 {
     tl_node_table *n = &m->elements->nodes;
     const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
-    for (int k = 0; k < 3 && !n->normal[0]; k++)
+    for (int k = 0; k < 3 && !n->outward[0]; k++)
         memset(lanes->normal[k], 0, (of->node_end - of->node_begin) * sizeof(double));
     for (uint32_t row = of->node_begin; row < of->node_end; row += TILE) {
         tile t;
@@ -119,7 +119,7 @@ static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes
         if (others < count) {
             load_tile(m, row, count, &t);
             move_tile(n, row, count, &t, per, lanes, i);
-            if (n->normal[0])
+            if (n->outward[0])
                 turn_tile(n, row, count, &t, lanes, i);
         }
         for (uint32_t k = 0; k < others; k++)

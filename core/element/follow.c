@@ -4,6 +4,7 @@
  * lies deeper in. A node of a block that was deleted gets weight 0 and acts on nothing: its element is detached. */
 #include "element/follow.h"
 
+#include "base/columns.h"
 #include "base/error.h"
 #include "base/inside.h"
 #include "element/batch.h"
@@ -51,8 +52,7 @@ static uint32_t row_of(tl_model *m, size_t row)
     tl_node_table *n = &m->elements->nodes;
     uint32_t block = tl_block_row_quiet(m, n->block[row]);
     if (block == TL_NO_ROW) {
-        const tl_vec3 began = tl_v3(n->rest[0][row] - n->from[0][row], n->rest[1][row] - n->from[1][row],
-                                    n->rest[2][row] - n->from[2][row]);
+        const tl_vec3 began = tl_v3_sub(tl_columns_get(n->rest, row), tl_node_from(n, row));
         block = part_with(m, n->block[row], began);
         if (block != TL_NO_ROW)
             n->block[row] = m->blocks.id[block];
@@ -104,7 +104,8 @@ tl_status tl_elements_follow(tl_model *m)
     struct tl_elements *e = m->elements;
     if (!e || (e->followed == m->structure && e->zones == (m->zones ? m->zones->version : 0)))
         return TL_OK;
-    if (tl_model_deforms(m) && !tl_nodes_hold_zones(&e->nodes))
+    if ((tl_model_deforms(m) && !tl_nodes_hold_zones(&e->nodes)) ||
+        (m->blocks.made && e->nodes.outward[0] && !tl_nodes_hold_normals(&e->nodes, true)))
         return tl_fail_memory(&m->error);
     tl_steady_let_go(m);
     const tl_element_table *t = &e->table;

@@ -26,7 +26,6 @@ static void add_columns(struct tl_elements *e)
     TL_COLUMN(&n->table, n, block, TL_COLUMN_STATE);
     for (int k = 0; k < 3; k++) {
         TL_COLUMN(&n->table, n, rest[k], TL_COLUMN_STATE);
-        TL_COLUMN(&n->table, n, from[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, local[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, base[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, u[k], TL_COLUMN_STATE | TL_COLUMN_STEP);

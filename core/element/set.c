@@ -179,11 +179,24 @@ bool tl_elements_hold_states(struct tl_elements *e, uint32_t of_nodes, uint32_t 
     return true;
 }
 
-bool tl_nodes_hold_normals(tl_node_table *n)
+bool tl_nodes_hold_from(tl_node_table *n)
 {
     bool enough = true;
-    for (int k = 0; k < 3; k++)
-        enough = enough && TL_COLUMN_NEED(&n->table, n, outward[k], 0) && TL_COLUMN_NEED(&n->table, n, normal[k], 0);
+    for (int k = 0; k < 3 && enough; k++)
+        enough = TL_COLUMN_NEED(&n->table, n, from[k], 0);
+    return enough;
+}
+
+bool tl_nodes_hold_normals(tl_node_table *n, bool turned)
+{
+    const bool had = n->normal[2];
+    bool enough = true;
+    for (int k = 0; k < 3 && enough; k++)
+        enough = TL_COLUMN_NEED(&n->table, n, outward[k], 0);
+    for (int k = 0; k < 3 && enough && turned; k++)
+        enough = TL_COLUMN_NEED(&n->table, n, normal[k], 0);
+    for (int k = 0; k < 3 && enough && turned && !had && n->table.rows > 0; k++)
+        memcpy(n->normal[k], n->outward[k], n->table.rows * sizeof *n->normal[k]);
     return enough;
 }
 

@@ -199,7 +199,7 @@ static size_t wall_of(const tl_model *m, size_t node, tl_vec3 *corner)
         return 3;
     }
     const tl_poly *shape = m->blocks.shape[row];
-    const tl_vec3 normal = tl_columns_get(n->normal, node);
+    const tl_vec3 normal = tl_columns_get(tl_node_normals(n), node);
     uint32_t face = 0; /* a convex block has one face along a normal */
     for (uint32_t f = 1; f < shape->face_count; f++)
         if (tl_v3_dot(shape->plane[f].normal, normal) > tl_v3_dot(shape->plane[face].normal, normal))

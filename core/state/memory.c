@@ -1,10 +1,10 @@
 /* memory.c - what a model holds, in bytes, by what it is for. Columns count with their spare rows, and so does the
  * second set of tables that contacts are laid out in from time to time. The allocator's own bytes (some 16 an
  * allocation, of which a block has one) are not counted. */
+#include "element/memory.h"
 #include "contact/store.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
-#include "element/memory.h"
 #include "element/walk.h"
 #include "geometry/make.h"
 #include "model/seats.h"

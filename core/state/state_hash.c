@@ -365,15 +365,14 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
 
 /* ---------------------------------------------------------------- elements --------------- */
 
-/* What only some nodes have. */
+/* What only some nodes have: zeros count as no column. */
 static void hash_node(tl_hash *hash, const tl_node_table *n, size_t row)
 {
-    const tl_vec3 outward = tl_node_outward(n, row);
-    const double *share = n->share ? n->share[row] : NULL;
-    if (tl_v3_norm2(outward) > 0)
-        tl_hash_numbers(hash, &outward.x, 3);
-    if (share && (share[0] != 0 || share[1] != 0 || share[2] != 0 || share[3] != 0))
-        tl_hash_numbers(hash, share, 4);
+    static const double none[4] = {0, 0, 0, 0};
+    const tl_vec3 from = tl_node_from(n, row), outward = tl_node_outward(n, row);
+    tl_hash_numbers(hash, &from.x, 3);
+    tl_hash_numbers(hash, &outward.x, 3);
+    tl_hash_numbers(hash, n->share ? n->share[row] : none, 4);
 }
 
 /* By name: which numbers kinds, groups and states have depends on what was there before. */
