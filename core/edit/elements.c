@@ -157,7 +157,7 @@ static tl_status ask(making *k, const char *kind, const tl_args *args, size_t co
     k->set = calloc(count + 1, sizeof *k->set);
     if (number == UINT32_MAX || !k->set || !tl_elements_begin(m))
         return tl_fail_memory(&m->error);
-    tl_elements_follow(m);
+    status = tl_elements_follow(m);
     for (size_t i = 0; i < count && status == TL_OK; i++)
         status = make_one(k, &args[i], number, count);
     return status;
@@ -253,8 +253,9 @@ tl_status tl_elements_renew(tl_model *m)
     if (status != TL_OK || !tl_model_has_elements(m))
         return status;
     tl_rows_tidy(m);
-    tl_elements_follow(m);
-    status = tl_elements_together(m, 0, false);
+    status = tl_elements_follow(m);
+    if (status == TL_OK)
+        status = tl_elements_together(m, 0, false);
     if (status == TL_OK)
         changed(m);
     return status;

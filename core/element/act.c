@@ -51,23 +51,35 @@ static void load_tile(const tl_model *m, uint32_t first, uint32_t count, tile *t
 TL_VECTORIZED static void move_tile(tl_node_table *n, size_t row, uint32_t count, const tile *t, double per,
                                     tl_element_lanes *lanes, size_t i)
 {
-    const double *restrict p[3] = {n->local[0] + row, n->local[1] + row, n->local[2] + row};
-    const double *restrict o[3] = {n->normal[0] + row, n->normal[1] + row, n->normal[2] + row};
+    const double *restrict px = n->local[0] + row, *restrict py = n->local[1] + row, *restrict pz = n->local[2] + row;
     for (int k = 0; k < 3; k++) {
         const double *restrict u = t->u[k], *restrict x = t->r[k][0], *restrict y = t->r[k][1];
         const double *restrict z = t->r[k][2], *restrict base = n->base[k] + row;
         double *restrict before = n->u[k] + row, *restrict du = lanes->du[k] + i, *restrict v = lanes->v[k] + i;
-        double *restrict normal = lanes->normal[k] + i;
+#pragma omp simd
         for (uint32_t l = 0; l < count; l++) {
-            const double now = (u[l] + (x[l] * p[0][l] + y[l] * p[1][l] + z[l] * p[2][l])) - base[l];
+            const double now = (u[l] + (x[l] * px[l] + y[l] * py[l] + z[l] * pz[l])) - base[l];
             const double moved = now - before[l];
             before[l] = now;
             du[l] = moved;
             v[l] = per * moved;
         }
+    }
+}
+
+/* Their normals likewise. */
+TL_VECTORIZED static void turn_tile(const tl_node_table *n, size_t row, uint32_t count, const tile *t,
+                                    tl_element_lanes *lanes, size_t i)
+{
+    double *const *own = tl_node_normals(n);
+    const double *restrict ox = own[0] + row, *restrict oy = own[1] + row, *restrict oz = own[2] + row;
+    for (int k = 0; k < 3; k++) {
+        const double *restrict x = t->r[k][0], *restrict y = t->r[k][1], *restrict z = t->r[k][2];
+        double *restrict normal = lanes->normal[k] + i;
+#pragma omp simd
         for (uint32_t l = 0; l < count; l++) {
-            const double turned = x[l] * o[0][l] + y[l] * o[1][l] + z[l] * o[2][l];
-            const double none = o[0][l] * o[0][l] + o[1][l] * o[1][l] + o[2][l] * o[2][l];
+            const double turned = x[l] * ox[l] + y[l] * oy[l] + z[l] * oz[l];
+            const double none = ox[l] * ox[l] + oy[l] * oy[l] + oz[l] * oz[l];
             normal[l] = none == 0 ? 0 : turned;
         }
     }
@@ -92,6 +104,8 @@ static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes
 {
     tl_node_table *n = &m->elements->nodes;
     const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
+    for (int k = 0; k < 3 && !n->outward[0]; k++)
+        memset(lanes->normal[k], 0, (of->node_end - of->node_begin) * sizeof(double));
     for (uint32_t row = of->node_begin; row < of->node_end; row += TILE) {
         tile t;
         uint32_t others = 0, other[TILE];
@@ -105,6 +119,8 @@ static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes
         if (others < count) {
             load_tile(m, row, count, &t);
             move_tile(n, row, count, &t, per, lanes, i);
+            if (n->outward[0])
+                turn_tile(n, row, count, &t, lanes, i);
         }
         for (uint32_t k = 0; k < others; k++)
             move_other(m, row + other[k], before[k], per, lanes, i + other[k]);
@@ -288,17 +304,23 @@ tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
 static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const struct tl_elements *e = m->elements;
-    const tl_mat3 *r = &m->bodies.pose[body].r;
-    tl_acting sum = *on;
-    const bool held = tl_steady_add(m, body, &sum);
-    for (uint32_t k = e->use_start[body]; k < (held ? e->steady_start[body] : e->use_start[body + 1]); k++) {
+    const uint32_t first = e->use_start[body];
+    if (first == e->use_start[body + 1])
+        return;
+    const tl_mat3 r = m->bodies.pose[body].r;
+    const uint32_t end = tl_steady_add(m, body, on) ? e->steady_start[body] : e->use_start[body + 1];
+    tl_vec3 force = on->force, moment = on->moment;
+    double magnitude = on->magnitude;
+    for (uint32_t k = first; k < end; k++) {
         const uint32_t row = e->use[k];
         const tl_vec3 f = tl_columns_get(e->nodes.force, row);
-        sum.force = tl_v3_add(sum.force, f);
-        sum.moment = tl_v3_add(sum.moment, tl_v3_cross(tl_m3_mul(r, tl_columns_get(e->nodes.local, row)), f));
-        sum.magnitude += tl_v3_norm(f);
+        force = tl_v3_add(force, f);
+        moment = tl_v3_add(moment, tl_v3_cross(tl_m3_mul(&r, tl_columns_get(e->nodes.local, row)), f));
+        magnitude += tl_v3_norm(f);
     }
-    *on = sum;
+    on->force = force;
+    on->moment = moment;
+    on->magnitude = magnitude;
 }
 
 void tl_elements_gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
@@ -334,10 +356,11 @@ void tl_elements_stiffen(tl_model *m, double *damping)
         const uint32_t row = e->carried[i], first = tl_node_first_point(m, row);
         const double *share = e->nodes.share[row];
         const double all = fabs(share[0]) + fabs(share[1]) + fabs(share[2]) + fabs(share[3]);
+        const double c = tl_node_damping(&e->nodes, row);
         for (int a = 0; a < 4; a++) {
             const uint32_t point = first + e->nodes.point[row][a];
             m->zones->points.holds[point] += 2 * e->nodes.k[row] * all * fabs(share[a]);
-            damping[point] += 2 * e->nodes.c[row] * all * fabs(share[a]);
+            damping[point] += 2 * c * all * fabs(share[a]);
         }
     }
 }
@@ -347,13 +370,13 @@ void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
     const struct tl_elements *e = m->elements;
     for (uint32_t k = 0; tl_elements_are_listed(m) && k < e->use_start[body + 1] - e->use_start[body]; k++) {
         const uint32_t row = e->use[e->use_start[body] + k];
-        const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row));
+        const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row)), c = tl_node_damping(&e->nodes, row);
         sum->stiffness.sum += e->nodes.k[row];
         sum->stiffness.r2 += e->nodes.k[row] * arm2;
         sum->undamped.sum += e->nodes.k[row];
         sum->undamped.r2 += e->nodes.k[row] * arm2;
-        sum->damping.sum += e->nodes.c[row];
-        sum->damping.r2 += e->nodes.c[row] * arm2;
+        sum->damping.sum += c;
+        sum->damping.r2 += c * arm2;
     }
 }
 
@@ -367,7 +390,7 @@ double tl_elements_stiffest(const tl_model *m, double *damping)
         if (body == TL_NO_ROW || m->bodies.fixed[body] == TL_FIX_ALL)
             continue;
         most = fmax(most, e->nodes.k[row]);
-        *damping = fmax(*damping, e->nodes.c[row]);
+        *damping = fmax(*damping, tl_node_damping(&e->nodes, row));
     }
     return most;
 }

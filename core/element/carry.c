@@ -170,6 +170,17 @@ static tl_vec3 shared(const tl_node_table *n, size_t row, double *const column[3
 
 /* ---------------------------------------------------------------- nodes ------------------ */
 
+bool tl_block_has_moved(const tl_model *m, uint32_t block)
+{
+    static const tl_base stays = {{0, 0, 0}, {1, 0, 0, 0}};
+    const tl_mat3 turn = tl_m3_identity();
+    const tl_base made = tl_block_made(m, block);
+    const uint32_t body = m->blocks.body[block];
+    const tl_pose *pose = &m->bodies.pose[body];
+    return m->bodies.mesh[body] || tl_v3_norm2(pose->u) > 0 || memcmp(&pose->r, &turn, sizeof turn) != 0 ||
+           memcmp(&made, &stays, sizeof stays) != 0;
+}
+
 void tl_node_install(tl_model *m, size_t row, tl_vec3 place, tl_vec3 normal)
 {
     tl_node_table *n = &m->elements->nodes;
@@ -193,25 +204,29 @@ void tl_node_install(tl_model *m, size_t row, tl_vec3 place, tl_vec3 normal)
     tl_columns_put(n->local, row, local);
     tl_columns_put(n->base, row, base);
     const tl_vec3 moved = first != TL_NO_ROW ? tl_v3_add(base, begun_of(m, body, local)) : base;
-    tl_columns_put(n->from, row, tl_v3_sub(moved, made_of(made, local)));
-    const tl_vec3 inward = tl_m3_tmul(&m->bodies.pose[body].r, normal);
-    tl_columns_put(n->normal, row, inward);
-    tl_columns_put(n->outward, row, tl_m3_mul(&turn, inward));
+    if (n->from[0])
+        tl_columns_put(n->from, row, tl_v3_sub(moved, made_of(made, local)));
+    const tl_vec3 own = tl_m3_tmul(&m->bodies.pose[body].r, normal);
+    if (n->outward[0])
+        tl_columns_put(n->outward, row, tl_m3_mul(&turn, own));
+    if (n->normal[0])
+        tl_columns_put(n->normal, row, own);
 }
 
 void tl_node_reframe(tl_model *m, size_t row, uint32_t block)
 {
     tl_node_table *n = &m->elements->nodes;
     const uint32_t body = n->body[row] = m->blocks.body[block];
-    const tl_vec3 x_ref = m->bodies.pose[body].x_ref, from = tl_columns_get(n->from, row);
+    const tl_vec3 x_ref = m->bodies.pose[body].x_ref, from = tl_node_from(n, row);
     const tl_base made = tl_block_made(m, block);
     const tl_mat3 turn = tl_q_matrix(made.turn);
     const tl_vec3 began = tl_v3_sub(tl_v3_sub(tl_columns_get(n->rest, row), from), x_ref);
     const tl_vec3 local = tl_m3_tmul(&turn, tl_v3_sub(began, made.shift));
-    const tl_vec3 normal = tl_m3_tmul(&turn, tl_columns_get(n->outward, row));
+    const tl_vec3 normal = tl_m3_tmul(&turn, tl_node_outward(n, row));
     tl_vec3 base = tl_v3_add(made_of(made, local), from);
     tl_columns_put(n->local, row, local);
-    tl_columns_put(n->normal, row, normal);
+    if (n->normal[0])
+        tl_columns_put(n->normal, row, normal);
     if (tl_node_first_point(m, row) != TL_NO_ROW) {
         const tl_body_mesh *mesh = &m->zones->mesh[m->bodies.mesh[body] - 1];
         const tl_mat3 begun = tl_q_matrix(mesh->made_q);
@@ -237,9 +252,10 @@ tl_vec3 tl_node_moved(const tl_model *m, size_t row)
 tl_vec3 tl_node_normal(const tl_model *m, size_t row)
 {
     const tl_node_table *n = &m->elements->nodes;
-    const tl_vec3 normal = tl_columns_get(n->normal, row);
     const uint32_t body = n->body[row], first = tl_node_first_point(m, row);
-    if (body == TL_NO_ROW || tl_v3_norm2(normal) == 0)
+    double *const *own = tl_node_normals(n);
+    const tl_vec3 normal = own[0] && body != TL_NO_ROW ? tl_columns_get(own, row) : tl_v3(0, 0, 0);
+    if (tl_v3_norm2(normal) == 0)
         return tl_v3(0, 0, 0);
     if (first == TL_NO_ROW)
         return tl_m3_mul(&m->bodies.pose[body].r, normal);

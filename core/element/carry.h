@@ -14,6 +14,8 @@ void tl_node_reframe(tl_model *m, size_t row, uint32_t block);
 tl_vec3 tl_node_moved(const tl_model *m, size_t row);
 /* Its present outward normal, unit, or zero. */
 tl_vec3 tl_node_normal(const tl_model *m, size_t row);
+/* Whether a block may have moved since it was made. */
+bool tl_block_has_moved(const tl_model *m, uint32_t block);
 /* How far a point, from the model's origin, lies inside of a block as it is now, m; below 0: outside. */
 double tl_block_depth(const tl_model *m, uint32_t block, tl_vec3 place);
 /* First gridpoint of the mesh that carries a node, or TL_NO_ROW: none does. */

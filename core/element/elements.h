@@ -51,22 +51,24 @@ typedef struct tl_element_table {
 
 typedef struct tl_node_table {
     tl_table table;
-    tl_id *block;       /* TL_NO_ID: the ground; or TL_GONE */
-    double *rest[3];    /* m, place when installed, from the model's origin */
-    double *from[3];    /* m, how far the block had moved there since it was made */
-    double *local[3];   /* m, in the body's frame */
-    double *base[3];    /* m */
-    double *outward[3]; /* normal of its face when its block was made, or 0; */
-    double *normal[3];  /* likewise in the body's frame, */
-    double *weight;     /* m or m2 */
-    double *u[3];       /* m, displacement since it was installed, as of the last step */
-    double *force[3];   /* N, on the block, in the last step */
+    tl_id *block;     /* TL_NO_ID: the ground; or TL_GONE */
+    double *rest[3];  /* m, place when installed, from the model's origin */
+    double *local[3]; /* m, in the body's frame */
+    double *base[3];  /* m */
+    double *weight;   /* m or m2 */
+    double *u[3];     /* m, displacement since it was installed, as of the last step */
+    double *force[3]; /* N, on the block, in the last step */
     double *state[TL_ELEMENT_COLUMNS];
-    uint32_t *body;       /* row, or TL_NO_ROW */
+    uint32_t *body; /* row, or TL_NO_ROW */
+    double *k;      /* N/m, bound that the kind has told */
+    uint32_t state_columns;
+    /* What only some elements need: NULL until there are such. */
+    double *from[3];      /* m, how far the block had moved there since it was made; NULL: nowhere */
+    double *outward[3];   /* normal of its face when its block was made, or 0; */
+    double *normal[3];    /* likewise in the body's frame; NULL: it is the same */
     uint32_t (*point)[4]; /* numbers of gridpoints in the mesh; of a node on a face the corners of its triangle first */
     double (*share)[4];   /* of them at the node; all 0: it is in no zone */
-    double *k, *c;        /* N/m and N s/m, bounds that the kind has told */
-    uint32_t state_columns;
+    double *c;            /* N s/m, bound that the kind has told */
 } tl_node_table;
 
 /* Whole elements of one set that a thread takes at a time. */
@@ -113,6 +115,7 @@ struct tl_elements {
     size_t carried_count, carried_capacity;
     void **memory; /* of elements, what their kinds keep between steps (memory.c); NULL: of none */
     unsigned char *memory_block;
+    size_t memory_bytes; /* of these, and of the room */
     double *room;        /* [9 for each node] motions and normals of elements with many nodes; NULL: there are none */
     uint64_t remembered; /* version for which there is memory */
     tl_id next_id;
@@ -138,6 +141,30 @@ static inline bool tl_elements_are_listed(const tl_model *m)
 {
     const struct tl_elements *e = m->elements;
     return e && e->listed == e->version && e->followed == m->structure;
+}
+
+/* How far the block of a node had moved there, when it was installed, since it was made, m. */
+static inline tl_vec3 tl_node_from(const tl_node_table *n, size_t row)
+{
+    return n->from[0] ? tl_v3(n->from[0][row], n->from[1][row], n->from[2][row]) : tl_v3(0, 0, 0);
+}
+
+/* Columns of the normals in the frames of bodies; their pointers are NULL where no node has one. */
+static inline double *const *tl_node_normals(const tl_node_table *n)
+{
+    return n->normal[0] ? n->normal : n->outward;
+}
+
+/* Normal of the face of a node when its block was made, or 0. */
+static inline tl_vec3 tl_node_outward(const tl_node_table *n, size_t row)
+{
+    return n->outward[0] ? tl_v3(n->outward[0][row], n->outward[1][row], n->outward[2][row]) : tl_v3(0, 0, 0);
+}
+
+/* Bound of its damping, N s/m. */
+static inline double tl_node_damping(const tl_node_table *n, size_t row)
+{
+    return n->c ? n->c[row] : 0;
 }
 
 /* Present place of a node, as of the last step, from the model's origin. */

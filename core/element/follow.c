@@ -4,6 +4,7 @@
  * lies deeper in. A node of a block that was deleted gets weight 0 and acts on nothing: its element is detached. */
 #include "element/follow.h"
 
+#include "base/columns.h"
 #include "base/error.h"
 #include "base/inside.h"
 #include "element/batch.h"
@@ -17,6 +18,7 @@
 #include "zone/zones.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- blocks ----------------- */
@@ -50,8 +52,7 @@ static uint32_t row_of(tl_model *m, size_t row)
     tl_node_table *n = &m->elements->nodes;
     uint32_t block = tl_block_row_quiet(m, n->block[row]);
     if (block == TL_NO_ROW) {
-        const tl_vec3 began = tl_v3(n->rest[0][row] - n->from[0][row], n->rest[1][row] - n->from[1][row],
-                                    n->rest[2][row] - n->from[2][row]);
+        const tl_vec3 began = tl_v3_sub(tl_columns_get(n->rest, row), tl_node_from(n, row));
         block = part_with(m, n->block[row], began);
         if (block != TL_NO_ROW)
             n->block[row] = m->blocks.id[block];
@@ -73,8 +74,10 @@ static void lose(tl_model *m, size_t row)
 static bool lacks_zone(const tl_model *m, size_t row)
 {
     const tl_node_table *n = &m->elements->nodes;
+    if (tl_node_first_point(m, row) == TL_NO_ROW)
+        return false;
     const double *share = n->share[row];
-    return tl_node_first_point(m, row) != TL_NO_ROW && share[0] == 0 && share[1] == 0 && share[2] == 0 && share[3] == 0;
+    return share[0] == 0 && share[1] == 0 && share[2] == 0 && share[3] == 0;
 }
 
 /* false: its block has gone. */
@@ -96,11 +99,14 @@ static bool follow_node(tl_model *m, size_t row)
     return true;
 }
 
-void tl_elements_follow(tl_model *m)
+tl_status tl_elements_follow(tl_model *m)
 {
     struct tl_elements *e = m->elements;
     if (!e || (e->followed == m->structure && e->zones == (m->zones ? m->zones->version : 0)))
-        return;
+        return TL_OK;
+    if ((tl_model_deforms(m) && !tl_nodes_hold_zones(&e->nodes)) ||
+        (m->blocks.made && e->nodes.outward[0] && !tl_nodes_hold_normals(&e->nodes, true)))
+        return tl_fail_memory(&m->error);
     tl_steady_let_go(m);
     const tl_element_table *t = &e->table;
     size_t detached = 0;
@@ -123,6 +129,7 @@ void tl_elements_follow(tl_model *m)
                      "elements: %zu of them, the first with id %u, ha%s lost a block that was deleted: nodes there act "
                      "on nothing any more",
                      detached, first, detached == 1 ? "s" : "ve");
+    return TL_OK;
 }
 
 /* ---------------------------------------------------------------- lists ------------------ */
@@ -168,6 +175,21 @@ static void use_chunks(tl_model *m, bool steady)
                 e->use[e->use_start[e->nodes.body[row] + 1]++] = row;
 }
 
+/* The nodes in zones. */
+static bool list_carried(tl_model *m)
+{
+    struct tl_elements *e = m->elements;
+    e->carried_count = 0;
+    for (uint32_t row = 0; row < e->nodes.table.rows && tl_model_deforms(m); row++) {
+        if (tl_node_first_point(m, row) == TL_NO_ROW)
+            continue;
+        if (!tl_grow(&e->carried, &e->carried_capacity, e->carried_count + 1, sizeof *e->carried))
+            return false;
+        e->carried[e->carried_count++] = row;
+    }
+    return true;
+}
+
 /* The nodes in zones, shares of threads, and the nodes of each rigid body. */
 static bool list_nodes(tl_model *m)
 {
@@ -175,16 +197,14 @@ static bool list_nodes(tl_model *m)
     const tl_node_table *n = &e->nodes;
     const size_t bodies = m->bodies.table.rows, nodes = n->table.rows;
     if (!tl_fit(&e->use, &e->use_capacity, nodes, sizeof *e->use) ||
-        !tl_fit(&e->carried, &e->carried_capacity, nodes, sizeof *e->carried) ||
         !tl_fit(&e->steady_start, &e->steady_start_capacity, bodies + 1, sizeof *e->steady_start) ||
         !tl_fit(&e->use_start, &e->use_start_capacity, bodies + 2, sizeof *e->use_start))
         return false;
     memset(e->use_start, 0, (bodies + 2) * sizeof *e->use_start);
-    e->carried_count = 0;
+    if (!list_carried(m))
+        return false;
     for (uint32_t row = 0; row < nodes; row++)
-        if (tl_node_first_point(m, row) != TL_NO_ROW)
-            e->carried[e->carried_count++] = row;
-        else if (n->body[row] != TL_NO_ROW)
+        if (is_used(m, row))
             e->use_start[n->body[row] + 2]++;
     if (!list_chunks(e))
         return false;
@@ -198,8 +218,8 @@ static bool list_nodes(tl_model *m)
 
 /* ---------------------------------------------------------------- stiffness -------------- */
 
-/* Asks the kind of a chunk for the stiffnesses of its nodes. */
-static tl_status rate_chunk(tl_model *m, const tl_element_chunk *of)
+/* Asks the kind of a chunk for the stiffnesses of its nodes, and for their damping. */
+static tl_status rate_chunk(tl_model *m, const tl_element_chunk *of, double *damping)
 {
     struct tl_elements *e = m->elements;
     const tl_element_set *set = &e->set[of->set];
@@ -208,18 +228,43 @@ static tl_status rate_chunk(tl_model *m, const tl_element_chunk *of)
     const tl_element_batch batch = tl_element_batch_of(m, of, &lanes);
     tl_element_lanes_stop(&lanes, of->node_end - of->node_begin);
     memset(n->k + of->node_begin, 0, (of->node_end - of->node_begin) * sizeof *n->k);
-    memset(n->c + of->node_begin, 0, (of->node_end - of->node_begin) * sizeof *n->c);
     tl_enter(set->kind, "stiffness");
-    tl_element_ops_of(set)->stiffness(set->self, &batch, n->k + of->node_begin, n->c + of->node_begin);
+    tl_element_ops_of(set)->stiffness(set->self, &batch, n->k + of->node_begin, damping + of->node_begin);
     tl_leave();
     for (uint32_t row = of->node_begin; row < of->node_end; row++)
-        if (!(n->k[row] >= 0 && isfinite(n->k[row]) && n->c[row] >= 0 && isfinite(n->c[row])))
+        if (!(n->k[row] >= 0 && isfinite(n->k[row]) && damping[row] >= 0 && isfinite(damping[row])))
             return tl_fail(
                 &m->error, TL_E_PLUGIN,
                 "element '%s' of plugin '%s': its stiffness() gives %g N/m and %g N s/m; both must be finite "
                 "and at least 0",
-                set->kind->name, tl_plugin_id(set->kind), n->k[row], n->c[row]);
+                set->kind->name, tl_plugin_id(set->kind), n->k[row], damping[row]);
     return TL_OK;
+}
+
+/* Keeps how nodes are damped, where some are. false: out of memory. */
+static bool keep_damping(tl_node_table *n, const double *damping)
+{
+    bool any = n->c != NULL;
+    for (size_t row = 0; row < n->table.rows && !any; row++)
+        any = damping[row] > 0;
+    if (any && !tl_nodes_hold_damping(n))
+        return false;
+    if (any)
+        memcpy(n->c, damping, n->table.rows * sizeof *n->c);
+    return true;
+}
+
+static tl_status rate_all(tl_model *m)
+{
+    struct tl_elements *e = m->elements;
+    double *damping = calloc(e->nodes.table.rows + 1, sizeof *damping);
+    tl_status status = damping ? TL_OK : tl_fail_memory(&m->error);
+    for (size_t k = 0; k < e->chunk_count && status == TL_OK; k++)
+        status = rate_chunk(m, &e->chunk[k], damping);
+    if (status == TL_OK && !keep_damping(&e->nodes, damping))
+        status = tl_fail_memory(&m->error);
+    free(damping);
+    return status;
 }
 
 static void note_most(struct tl_elements *e)
@@ -227,7 +272,7 @@ static void note_most(struct tl_elements *e)
     e->most_k = e->most_c = 0;
     for (size_t row = 0; row < e->nodes.table.rows; row++) {
         e->most_k = fmax(e->most_k, e->nodes.k[row]);
-        e->most_c = fmax(e->most_c, e->nodes.c[row]);
+        e->most_c = fmax(e->most_c, tl_node_damping(&e->nodes, row));
     }
 }
 
@@ -237,8 +282,9 @@ tl_status tl_elements_ready(tl_model *m)
     if (!e)
         return TL_OK;
     tl_rows_tidy(m); /* lists below hold rows of bodies */
-    tl_elements_follow(m);
-    tl_status status = tl_elements_lay_again(m);
+    tl_status status = tl_elements_follow(m);
+    if (status == TL_OK)
+        status = tl_elements_lay_again(m);
     if (status != TL_OK)
         return status;
     const bool anew = e->listed != e->version;
@@ -253,8 +299,8 @@ tl_status tl_elements_ready(tl_model *m)
             return tl_fail_memory(&m->error);
         e->remembered = e->version;
     }
-    for (size_t k = 0; e->rated != e->version && k < e->chunk_count && status == TL_OK; k++)
-        status = rate_chunk(m, &e->chunk[k]);
+    if (e->rated != e->version)
+        status = rate_all(m);
     if (status == TL_OK)
         e->rated = e->version;
     if (anew && status == TL_OK)

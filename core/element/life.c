@@ -26,20 +26,14 @@ static void add_columns(struct tl_elements *e)
     TL_COLUMN(&n->table, n, block, TL_COLUMN_STATE);
     for (int k = 0; k < 3; k++) {
         TL_COLUMN(&n->table, n, rest[k], TL_COLUMN_STATE);
-        TL_COLUMN(&n->table, n, from[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, local[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, base[k], TL_COLUMN_STATE);
-        TL_COLUMN(&n->table, n, outward[k], TL_COLUMN_STATE);
-        TL_COLUMN(&n->table, n, normal[k], 0);
         TL_COLUMN(&n->table, n, u[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
         TL_COLUMN(&n->table, n, force[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     }
     TL_COLUMN(&n->table, n, weight, TL_COLUMN_STATE);
     TL_COLUMN(&n->table, n, body, 0);
-    TL_COLUMN(&n->table, n, point, 0);
-    TL_COLUMN(&n->table, n, share, TL_COLUMN_STATE);
     TL_COLUMN(&n->table, n, k, 0);
-    TL_COLUMN(&n->table, n, c, 0);
 
     tl_steady_table *s = &e->steady;
     tl_table_init(&s->table, s);

@@ -20,6 +20,15 @@ void tl_elements_forget(struct tl_elements *e)
     e->room = NULL;
     e->memory = NULL;
     e->memory_block = NULL;
+    e->memory_bytes = 0;
+}
+
+size_t tl_elements_bytes(const struct tl_elements *e)
+{
+    size_t sum = sizeof *e + e->memory_bytes + e->set_capacity * sizeof *e->set;
+    for (size_t k = 0; k < e->set_count; k++)
+        sum += e->set[k].kind->params_size + 1;
+    return sum;
 }
 
 /* Bytes for each element, by rows. */
@@ -50,8 +59,10 @@ bool tl_elements_remember(tl_model *m)
         any = any || tl_element_ops_of(&e->set[e->chunk[k].set])->memory;
         many = many || e->chunk[k].node_end - e->chunk[k].node_begin > TL_ELEMENT_NODES;
     }
+    const size_t room = many ? 9 * e->nodes.table.rows * sizeof *e->room : 0;
     if (many)
-        e->room = malloc(9 * e->nodes.table.rows * sizeof *e->room);
+        e->room = malloc(room);
+    e->memory_bytes = e->room ? room : 0;
     if (!any || (many && !e->room))
         return !many || e->room;
     size_t *bytes = calloc(rows, sizeof *bytes), sum = 0;
@@ -75,5 +86,6 @@ bool tl_elements_remember(tl_model *m)
     }
     e->memory = memory;
     e->memory_block = block;
+    e->memory_bytes += sum + LINE + rows * sizeof *memory;
     return true;
 }

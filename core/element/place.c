@@ -228,13 +228,29 @@ static void put(tl_placing *p, const tl_placed *one, uint32_t set)
     }
 }
 
+/* Gives nodes the columns that what is placed needs. */
+static bool hold_columns(const tl_placing *p)
+{
+    tl_node_table *n = &p->m->elements->nodes;
+    bool faces = false, zones = false, moved = false;
+    for (size_t i = 0; i < p->node_count; i++) {
+        const tl_element_node *node = &p->node[i];
+        const uint32_t row = node->block == TL_NO_ID ? TL_NO_ROW : tl_block_row_quiet(p->m, node->block);
+        faces = faces || tl_v3_norm2(node->normal) > 0;
+        zones = zones || (row != TL_NO_ROW && tl_block_deforms(p->m, row));
+        moved = moved || (row != TL_NO_ROW && tl_block_has_moved(p->m, row));
+    }
+    return (!faces || tl_nodes_hold_normals(n, p->m->blocks.made)) && (!zones || tl_nodes_hold_zones(n)) &&
+           (!moved || tl_nodes_hold_from(n));
+}
+
 tl_status tl_placing_commit(tl_placing *p, uint32_t first_set)
 {
     struct tl_elements *e = p->m->elements;
     const size_t elements = e->table.table.rows + p->placed_count, nodes = e->nodes.table.rows + p->node_count;
     if (elements >= TL_NO_ROW || nodes >= TL_NO_ROW || e->next_id > TL_NO_ROW - p->placed_count)
         return tl_fail(&p->m->error, TL_E_STATE, "there would be too many elements");
-    if (!tl_table_reserve(&e->table.table, elements) || !tl_table_reserve(&e->nodes.table, nodes))
+    if (!hold_columns(p) || !tl_table_reserve(&e->table.table, elements) || !tl_table_reserve(&e->nodes.table, nodes))
         return tl_fail_memory(&p->m->error);
     for (size_t k = 0; k < p->placed_count; k++) {
         const tl_placed *one = &p->placed[k];

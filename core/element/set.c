@@ -178,3 +178,44 @@ bool tl_elements_hold_states(struct tl_elements *e, uint32_t of_nodes, uint32_t 
     t->state_columns += count;
     return true;
 }
+
+/* Gives a table columns, of zeros, unless it has them. */
+static bool hold(tl_table *table, const tl_column *columns, size_t count)
+{
+    bool there = false;
+    for (size_t i = 0; i < table->column_count; i++)
+        there = there || table->columns[i].offset == columns[0].offset;
+    return there || tl_table_widen(table, columns, count);
+}
+
+bool tl_nodes_hold_from(tl_node_table *n)
+{
+    const tl_column columns[] = {TL_COLUMN_NEW(n, from[0], 0), TL_COLUMN_NEW(n, from[1], 0),
+                                 TL_COLUMN_NEW(n, from[2], 0)};
+    return hold(&n->table, columns, 3);
+}
+
+bool tl_nodes_hold_normals(tl_node_table *n, bool turned)
+{
+    const tl_column outward[] = {TL_COLUMN_NEW(n, outward[0], 0), TL_COLUMN_NEW(n, outward[1], 0),
+                                 TL_COLUMN_NEW(n, outward[2], 0)};
+    const tl_column normal[] = {TL_COLUMN_NEW(n, normal[0], 0), TL_COLUMN_NEW(n, normal[1], 0),
+                                TL_COLUMN_NEW(n, normal[2], 0)};
+    const bool had = n->normal[0];
+    if (!hold(&n->table, outward, 3) || (turned && !hold(&n->table, normal, 3)))
+        return false;
+    for (int k = 0; k < 3 && turned && !had && n->table.rows > 0; k++)
+        memcpy(n->normal[k], n->outward[k], n->table.rows * sizeof *n->normal[k]);
+    return true;
+}
+
+bool tl_nodes_hold_zones(tl_node_table *n)
+{
+    const tl_column columns[] = {TL_COLUMN_NEW(n, point, 0), TL_COLUMN_NEW(n, share, 0)};
+    return hold(&n->table, columns, 2);
+}
+
+bool tl_nodes_hold_damping(tl_node_table *n)
+{
+    return TL_COLUMN_NEED(&n->table, n, c, 0);
+}

@@ -16,9 +16,11 @@ static bool places_are_sound(const tl_node_table *n, size_t row)
 {
     double sum = 0;
     for (int k = 0; k < 3; k++)
-        sum += n->rest[k][row] + n->from[k][row] + n->local[k][row] + n->base[k][row] + n->outward[k][row] +
-               n->normal[k][row] + n->u[k][row];
-    return isfinite(sum) && n->weight[row] >= 0 && isfinite(n->weight[row]) && n->k[row] >= 0 && n->c[row] >= 0;
+        sum += n->rest[k][row] + n->local[k][row] + n->base[k][row] + n->u[k][row] +
+               (n->from[k] ? n->from[k][row] : 0) + (n->outward[k] ? n->outward[k][row] : 0) +
+               (n->normal[k] ? n->normal[k][row] : 0);
+    return isfinite(sum) && n->weight[row] >= 0 && isfinite(n->weight[row]) && n->k[row] >= 0 &&
+           tl_node_damping(n, row) >= 0;
 }
 
 static bool carrier_is_sound(const tl_model *m, size_t row)
@@ -29,6 +31,8 @@ static bool carrier_is_sound(const tl_model *m, size_t row)
         return m->elements->followed != m->structure; /* it is found again before it is used */
     const uint32_t mesh = body == TL_NO_ROW ? 0 : m->bodies.mesh[body];
     double sum = 0;
+    if (!n->share)
+        return !mesh;
     for (int a = 0; a < 4; a++)
         sum += fabs(n->share[row][a]);
     if (!(sum <= MOST_SHARES))

@@ -3,11 +3,11 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "elements.", e, member)
 #define LIST(keep, member, count, capacity)                                                                            \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "elements.", e, member, &e->count, &e->capacity, offsetof(tl_memory, other))
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "elements.", e, member, &e->count, &e->capacity, offsetof(tl_memory, elements))
 
 void tl_elements_walk(struct tl_elements *e, const tl_walk *walk)
 {
-    const size_t counts = offsetof(tl_memory, other);
+    const size_t counts = offsetof(tl_memory, elements);
     tl_walk_table(walk, TL_KEEP_STATE, "elements.table", &e->table.table, counts);
     tl_walk_table(walk, TL_KEEP_STATE, "elements.nodes", &e->nodes.table, counts);
     tl_walk_table(walk, TL_KEEP_STATE, "elements.steady", &e->steady.table, counts);

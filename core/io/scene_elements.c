@@ -59,7 +59,7 @@ typedef struct columns {
 
 static bool is_line(const struct tl_elements *e, size_t row)
 {
-    return !(tl_v3_norm2(tl_columns_get(e->nodes.outward, e->table.node_begin[row])) > 0);
+    return !(tl_v3_norm2(tl_node_outward(&e->nodes, e->table.node_begin[row])) > 0);
 }
 
 static bool has_pressure(const tl_kind *kind)
@@ -199,7 +199,7 @@ static size_t wall_of(const tl_model *m, size_t node, tl_vec3 *corner)
         return 3;
     }
     const tl_poly *shape = m->blocks.shape[row];
-    const tl_vec3 normal = tl_columns_get(n->normal, node);
+    const tl_vec3 normal = tl_columns_get(tl_node_normals(n), node);
     uint32_t face = 0; /* a convex block has one face along a normal */
     for (uint32_t f = 1; f < shape->face_count; f++)
         if (tl_v3_dot(shape->plane[f].normal, normal) > tl_v3_dot(shape->plane[face].normal, normal))
@@ -384,7 +384,9 @@ tl_status tl_scene_elements(tl_model *m, tl_piece *out)
 {
     if (!tl_model_has_elements(m))
         return TL_OK;
-    tl_elements_follow(m);
+    const tl_status followed = tl_elements_follow(m);
+    if (followed != TL_OK)
+        return followed;
     columns c = {.m = m};
     list_numbers(m, &c.of);
     bool failed = false;

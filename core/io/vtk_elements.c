@@ -40,7 +40,7 @@ typedef struct list {
 
 static bool lies_on_a_face(const struct tl_elements *e, size_t row)
 {
-    return tl_v3_norm2(tl_columns_get(e->nodes.outward, e->table.node_begin[row])) > 0;
+    return tl_v3_norm2(tl_node_outward(&e->nodes, e->table.node_begin[row])) > 0;
 }
 
 static bool has_triangles(const struct tl_elements *e, size_t row)
@@ -181,7 +181,9 @@ static tl_status put_states(tl_model *m, bool whole, tl_pieces *out)
 tl_status tl_vtk_elements(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     (void)parts;
-    tl_elements_follow(m);
+    const tl_status followed = tl_elements_follow(m);
+    if (followed != TL_OK)
+        return followed;
     const struct tl_elements *e = m->elements;
     FILE *file = out->output->file;
     const size_t cells = cell_count(e), points = e->nodes.table.rows;

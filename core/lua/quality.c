@@ -470,7 +470,7 @@ static int model_profile(lua_State *L, tl_model *model)
 static int model_memory(lua_State *L, tl_model *model)
 {
     tl_memory memory = tl_model_memory(model);
-    lua_createtable(L, 0, 13);
+    lua_createtable(L, 0, 14);
 #define SET(name, doc) tl_lua_set_count(L, #name, memory.name);
     TL_MEMORY(SET)
 #undef SET

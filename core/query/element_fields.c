@@ -23,7 +23,8 @@
 uint32_t tl_element_find(tl_model *m, tl_id id)
 {
     tl_rows_tidy(m);
-    tl_elements_follow(m);
+    if (tl_elements_follow(m) != TL_OK)
+        return TL_NO_ROW;
     const uint32_t row = tl_element_row(m, id);
     if (row == TL_NO_ROW)
         tl_fail(&m->error, TL_E_STALE, "there is no element %u: it has been deleted, or never was", id);
@@ -44,7 +45,9 @@ tl_status tl_elements_select(tl_model *m, const tl_element_filter *filter, tl_id
     *ids = NULL;
     *count = 0;
     tl_rows_tidy(m);
-    tl_elements_follow(m);
+    const tl_status status = tl_elements_follow(m);
+    if (status != TL_OK)
+        return status;
     const struct tl_elements *e = m->elements;
     const size_t rows = e ? e->table.table.rows : 0;
     tl_id *list = malloc((rows + 1) * sizeof *list);
@@ -271,8 +274,8 @@ static bool find_blocks(const struct tl_elements *e, size_t row, asked_contact *
     const tl_id a = n->block[first], b = n->block[last];
     of->a = a < b ? a : b;
     of->b = a < b ? b : a;
-    return a != b && of->a != TL_NO_ID && of->b != TL_GONE && tl_v3_norm2(tl_columns_get(n->outward, first)) > 0 &&
-           tl_v3_norm2(tl_columns_get(n->outward, last)) > 0;
+    return a != b && of->a != TL_NO_ID && of->b != TL_GONE && tl_v3_norm2(tl_node_outward(n, first)) > 0 &&
+           tl_v3_norm2(tl_node_outward(n, last)) > 0;
 }
 
 /* Adds a state of an element to the sums of a contact. */
@@ -304,7 +307,7 @@ tl_status tl_contacts_element_values(tl_model *m, const tl_contact_name *contact
         asked[i] = (asked_contact){.a = contacts[i].a, .b = contacts[i].b, .index = i};
     }
     if (status == TL_OK)
-        tl_elements_follow(m);
+        status = tl_elements_follow(m);
     if (status == TL_OK && count > 1)
         qsort(asked, count, sizeof *asked, compare_asked);
     for (size_t row = 0; status == TL_OK && e && count > 0 && row < e->table.table.rows; row++) {

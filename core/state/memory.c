@@ -1,6 +1,7 @@
 /* memory.c - what a model holds, in bytes, by what it is for. Columns count with their spare rows, and so does the
  * second set of tables that contacts are laid out in from time to time. The allocator's own bytes (some 16 an
  * allocation, of which a block has one) are not counted. */
+#include "element/memory.h"
 #include "contact/store.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
@@ -77,7 +78,7 @@ tl_memory tl_model_memory(const tl_model *m)
         tl_segments_walk(m->segments, &walk);
     if (m->elements) {
         tl_elements_walk(m->elements, &walk);
-        memory.other += sizeof *m->elements + m->elements->set_capacity * sizeof *m->elements->set;
+        memory.elements += tl_elements_bytes(m->elements);
     }
     if (m->cycle) {
         tl_cycle_walk(m->cycle, &walk);

@@ -631,6 +631,16 @@ static tl_status read_segments(tl_model *m, const tl_archive *a)
     return tl_segments_index(m) ? TL_OK : tl_fail_memory(&m->error);
 }
 
+/* Makes the columns that few nodes need. */
+static bool hold_nodes(tl_node_table *n, const tl_archive *a)
+{
+    const bool moved = tl_archive_find(a, "elements.nodes.from[0]"), zones = tl_archive_find(a, "elements.nodes.share");
+    const bool faces = tl_archive_find(a, "elements.nodes.outward[0]"), damped = tl_archive_find(a, "elements.nodes.c");
+    const bool turned = tl_archive_find(a, "elements.nodes.normal[0]");
+    return (!moved || tl_nodes_hold_from(n)) && (!faces || tl_nodes_hold_normals(n, turned)) &&
+           (!zones || tl_nodes_hold_zones(n)) && (!damped || tl_nodes_hold_damping(n));
+}
+
 static tl_status read_elements(tl_model *m, const tl_archive *a)
 {
     if (!m->elements)
@@ -640,7 +650,7 @@ static tl_status read_elements(tl_model *m, const tl_archive *a)
     if (!tl_archive_get(a, "elements.nodes.state_columns", &nodes, sizeof nodes, 1) || nodes > TL_ELEMENT_COLUMNS ||
         !tl_archive_get(a, "elements.table.state_columns", &whole, sizeof whole, 1) || whole > TL_ELEMENT_COLUMNS)
         return tl_archive_bad(a, &m->error, "'elements' is missing or does not fit");
-    if (!tl_elements_hold_states(e, nodes, whole))
+    if (!tl_elements_hold_states(e, nodes, whole) || !hold_nodes(&e->nodes, a))
         return tl_fail_memory(&m->error);
     const uint32_t had[2] = {e->nodes.state_columns, e->table.state_columns};
     reader r = {.archive = a};

@@ -128,9 +128,9 @@ static tl_status save_under(tl_model *m, const char *path)
 static tl_status prepare(tl_model *m)
 {
     tl_rows_tidy(m);
-    tl_elements_follow(m);
-    if (!m->cycle)
-        return TL_OK;
+    const tl_status followed = tl_elements_follow(m);
+    if (followed != TL_OK || !m->cycle)
+        return followed;
     if (tl_undo_lost(m->cycle))
         return tl_fail(&m->error, TL_E_STATE,
                        "save: cycle %lld failed and could not be taken back: make the model anew",

@@ -365,6 +365,16 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
 
 /* ---------------------------------------------------------------- elements --------------- */
 
+/* What only some nodes have: zeros count as no column. */
+static void hash_node(tl_hash *hash, const tl_node_table *n, size_t row)
+{
+    static const double none[4] = {0, 0, 0, 0};
+    const tl_vec3 from = tl_node_from(n, row), outward = tl_node_outward(n, row);
+    tl_hash_numbers(hash, &from.x, 3);
+    tl_hash_numbers(hash, &outward.x, 3);
+    tl_hash_numbers(hash, n->share ? n->share[row] : none, 4);
+}
+
 /* By name: which numbers kinds, groups and states have depends on what was there before. */
 static void hash_elements(tl_hash *hash, const tl_model *m)
 {
@@ -383,6 +393,8 @@ static void hash_elements(tl_hash *hash, const tl_model *m)
         hash_rows(hash, &t->table, row, row + 1);
     }
     hash_rows(hash, &e->nodes.table, 0, e->nodes.table.rows);
+    for (size_t row = 0; row < e->nodes.table.rows; row++)
+        hash_node(hash, &e->nodes, row);
     hash_rows(hash, &e->steady.table, 0, e->steady.table.rows);
 }
 

@@ -1886,6 +1886,7 @@ function Model:profile(on) end
 ---@field index integer lists of each block's contacts, and of contacts by number
 ---@field spare integer second set of tables of contacts and points
 ---@field zones integer gridpoints, zones and segments of deformable blocks
+---@field elements integer elements, their nodes, parameters and lists
 ---@field other integer rows by number, scratch of the threads, joints and laws
 ---@field total integer all of them
 

@@ -3,7 +3,7 @@
  *     ./bootstrap bench elements
  *
  * 1,000 bolts across a joint that opens and shears a little in each step: while all is elastic, and while grout slips and
- * steel yields. The target is 1.5 us a bolt and step, elastic, and 120 bytes of states a node. Processor time. */
+ * steel yields. The target is 1.5 us a bolt and step, and 120 bytes of states a node. Processor time. */
 #include "../../plugins/elements/bolt/bolt.c"
 #include "../../plugins/elements/bolt/chain.c"
 

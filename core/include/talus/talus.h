@@ -495,6 +495,7 @@ TL_API tl_profile tl_model_profile(const tl_model *model);
     X(index, "lists of each block's contacts, and of contacts by number")                                              \
     X(spare, "second set of tables of contacts and points")                                                            \
     X(zones, "gridpoints, zones and segments of deformable blocks")                                                    \
+    X(elements, "elements, their nodes, parameters and lists")                                                         \
     X(other, "rows by number, scratch of the threads, joints and laws")
 
 typedef struct tl_memory {

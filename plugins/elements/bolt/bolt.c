@@ -144,23 +144,23 @@ static steel steel_of(const params *p)
                    .residual = (isnan(p->grout_residual) ? p->grout_strength : p->grout_residual) + friction};
 }
 
-/* Grout of `length` at node k. */
+/* Grout of `length` at node k that has not slipped. */
 static void put_grout(chain *c, uint32_t k, const params *p, const steel *s, double length)
 {
     c->hold[k] = p->grout_stiffness * length;
     c->bond[k] = s->bond * length;
     c->residual[k] = s->residual * length;
-    c->bears[k] = c->worn[k] ? c->residual[k] : c->bond[k];
+    c->bears[k] = c->bond[k];
 }
 
 /* Steel of the length h from node k on, whose strain counts over `gauge`. */
-static void put_steel(chain *c, uint32_t k, const params *p, const steel *s, double h, double gauge, bool cut)
+static void put_steel(chain *c, uint32_t k, const params *p, const steel *s, double h, double gauge)
 {
     c->stiff[k] = s->ea / larger(h, SHORT * p->diameter);
     c->even[k] = s->ea / gauge;
     c->gauge[k] = gauge;
     c->even[k + 1] = c->even[k];
-    c->limit[k] = cut ? 0 : p->yield;
+    c->limit[k] = p->yield;
 }
 
 /* ---------------------------------------------------------------- placing ---------------- */
@@ -244,7 +244,7 @@ static void begin_chain(chain *c, const params *p, const tl_line_node *at, size_
         if (k + 1 < count) {
             const double h = at[k + 1].at - at[k].at, before = k ? at[k].at - at[k - 1].at : h;
             const double after = k + 2 < count ? at[k + 2].at - at[k + 1].at : h;
-            put_steel(c, k, p, &s, h, gauge_of(before, h, after, at[k].passes), false);
+            put_steel(c, k, p, &s, h, gauge_of(before, h, after, at[k].passes));
         }
         state[k * NODE_STATES + GROUTED] = length;
         state[k * NODE_STATES + CROSSES] = at[k].passes;
@@ -345,11 +345,31 @@ typedef struct crossing {
 typedef struct bolt {
     chain c;
     uint32_t row[CHAIN_ROOM];
+    bool in_order;                        /* rows follow each other: no node is gone */
+    double grouted[CHAIN_ROOM];           /* m */
     double h[CHAIN_ROOM];                 /* of segments, when installed */
     double along[3][CHAIN_ROOM];          /* unit vector of the tension */
     crossing cross[TL_ELEMENT_NODES / 2]; /* each has nodes of its own on either side */
     uint32_t crossings;
 } bolt;
+
+/* Takes what the nodes have in a column of the batch, ... */
+static void take(const bolt *t, const double *column, double *to)
+{
+    if (t->in_order)
+        memcpy(to, column + t->row[0], t->c.count * sizeof *to);
+    for (uint32_t k = 0; k < t->c.count && !t->in_order; k++)
+        to[k] = column[t->row[k]];
+}
+
+/* ... and puts it there. */
+static void give(const bolt *t, const double *from, double *column)
+{
+    if (t->in_order)
+        memcpy(column + t->row[0], from, t->c.count * sizeof *from);
+    for (uint32_t k = 0; k < t->c.count && !t->in_order; k++)
+        column[t->row[k]] = from[k];
+}
 
 static tl_vec3 column(const double *const of[3], uint32_t i)
 {
@@ -368,20 +388,18 @@ static tl_vec3 way_of(const tl_element_batch *b, uint32_t i, uint32_t j)
                  b->rest[2][j] - b->rest[2][i] + (b->u[2][j] - b->u[2][i]));
 }
 
-/* Places and displacements of the nodes that are left, and how much longer the ways between them have become, m. */
-typedef struct ways {
-    double rest[3][CHAIN_ROOM], u[3][CHAIN_ROOM], longer[CHAIN_ROOM];
-} ways;
-
-/* Elongations of ways within a body; fills h and along. L^2 - h^2 = d . (2 r + d) keeps the digits of a small d. */
-TL_VECTORIZED static void stretch(bolt *t, ways *w)
+/* Elongations of ways within a body, of nodes at these places that have gone by u; fills h and along. L^2 - h^2 =
+ * d . (2 r + d) keeps the digits of a small d. */
+TL_VECTORIZED static void stretch(bolt *t, const double *const rest_of[3], const double *const u_of[3],
+                                  double *restrict longer_of)
 {
+    const double *restrict x = rest_of[0], *restrict y = rest_of[1], *restrict z = rest_of[2];
+    const double *restrict u = u_of[0], *restrict v = u_of[1], *restrict w = u_of[2];
     const uint32_t last = t->c.count - 1;
 #pragma omp simd
     for (uint32_t k = 0; k < last; k++) {
-        const tl_vec3 rest = {w->rest[0][k + 1] - w->rest[0][k], w->rest[1][k + 1] - w->rest[1][k],
-                              w->rest[2][k + 1] - w->rest[2][k]};
-        const tl_vec3 moved = {w->u[0][k + 1] - w->u[0][k], w->u[1][k + 1] - w->u[1][k], w->u[2][k + 1] - w->u[2][k]};
+        const tl_vec3 rest = {x[k + 1] - x[k], y[k + 1] - y[k], z[k + 1] - z[k]};
+        const tl_vec3 moved = {u[k + 1] - u[k], v[k + 1] - v[k], w[k + 1] - w[k]};
         const tl_vec3 now = tl_v3_add(rest, moved);
         const double h = tl_v3_norm(rest), length = tl_v3_norm(now), per = length > 0 ? 1 / length : 0;
         const double longer = tl_v3_dot(moved, tl_v3_add(tl_v3_add(rest, rest), moved)) / (length + h);
@@ -389,7 +407,7 @@ TL_VECTORIZED static void stretch(bolt *t, ways *w)
         t->along[0][k] = per * now.x;
         t->along[1][k] = per * now.y;
         t->along[2][k] = per * now.z;
-        w->longer[k] = fabs(longer) > NOISE * tl_v3_norm(moved) ? longer : 0;
+        longer_of[k] = fabs(longer) > NOISE * tl_v3_norm(moved) ? longer : 0;
     }
 }
 
@@ -428,14 +446,14 @@ static double dowel_stiffness(const params *p, double peak)
     return peak * p->dowel_stiffness > p->dowel_strength ? p->dowel_strength / peak : p->dowel_stiffness;
 }
 
-/* Finds the nodes that are left of an element, and where they are. */
-static void lay(bolt *t, const params *p, const steel *s, const tl_element_batch *b, uint32_t e)
+/* Finds the nodes that are left of an element, and the crossings between them. */
+static void find_nodes(bolt *t, const tl_element_batch *b, uint32_t e)
 {
     chain *c = &t->c;
-    c->count = t->crossings = 0;
-    c->pull = 0;
+    const double *crossing_from = b->state[CROSSES];
     uint32_t begin = 0;
     bool crosses = false;
+    c->count = t->crossings = 0;
     for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++) {
         const bool gone = b->weight[i] == 0;
         if (!gone) {
@@ -447,47 +465,91 @@ static void lay(bolt *t, const params *p, const steel *s, const tl_element_batch
                 t->cross[t->crossings++] = (crossing){.segment = k - 1, .begin = begin};
                 begin = k;
             }
-            c->w[k] = b->state[STEEL][i];
-            c->slip[k] = b->state[GROUT_SLIP][i];
-            c->worn[k] = b->state[WORN][i] != 0;
-            c->plastic[k] = b->state[PLASTIC][i];
-            put_grout(c, k, p, s, b->state[GROUTED][i]);
         }
-        crosses = (crosses && gone) || gone || b->state[CROSSES][i] != 0;
+        crosses = (crosses && gone) || gone || crossing_from[i] != 0;
     }
     if (t->crossings > 0)
         t->cross[t->crossings - 1].end = c->count - 1;
+    t->in_order = c->count == b->start[e + 1] - b->start[e];
+}
+
+/* Grout of all nodes, whose lengths are known; `worn` becomes 0 or 1. */
+TL_VECTORIZED static void put_all_grout(bolt *t, const params *p, const steel *s)
+{
+    const double stiffness = p->grout_stiffness, bond = s->bond, residual = s->residual;
+    chain *c = &t->c;
+#pragma omp simd
+    for (uint32_t k = 0; k < c->count; k++) {
+        const double length = t->grouted[k], whole = bond * length, left = residual * length;
+        c->hold[k] = stiffness * length;
+        c->bond[k] = whole;
+        c->residual[k] = left;
+        c->bears[k] = c->worn[k] != 0 ? left : whole;
+        c->worn[k] = c->worn[k] != 0 ? 1 : 0;
+    }
+}
+
+/* Finds the nodes that are left of an element, and what they have. */
+static void lay(bolt *t, const params *p, const steel *s, const tl_element_batch *b, uint32_t e)
+{
+    chain *c = &t->c;
+    find_nodes(t, b, e);
+    take(t, b->state[STEEL], c->w);
+    take(t, b->state[GROUT_SLIP], c->slip);
+    take(t, b->state[WORN], c->worn);
+    take(t, b->state[PLASTIC], c->plastic);
+    take(t, b->state[GROUTED], t->grouted);
+    put_all_grout(t, p, s);
     const bool mouth = c->count > 0 && t->row[0] == b->start[e];
+    c->pull = 0;
     c->plate_stiff = mouth ? p->plate_stiffness : 0;
     c->plate_limit = p->plate_strength;
     c->seat = b->element_state[SEAT][e];
 }
 
-/* Displacement of the rock along the bolt, from its first node on. */
+/* Steel of all segments, whose lengths and those of their strains are known; `cut`: 0 where it is whole. */
+TL_VECTORIZED static void put_all_steel(bolt *t, const params *p, const steel *s, const double *restrict cut)
+{
+    const double least = SHORT * p->diameter, ea = s->ea, yield = p->yield;
+    chain *c = &t->c;
+#pragma omp simd
+    for (uint32_t k = 0; k < c->count - 1; k++) {
+        c->stiff[k] = ea / larger(t->h[k], least);
+        c->even[k] = ea / c->gauge[k];
+        c->limit[k] = cut[k] != 0 ? 0 : yield;
+    }
+    c->even[c->count - 1] = c->even[c->count - 2];
+}
+
+/* Displacement of the rock along the bolt, from its first node on, and what follows of the steel. */
 static void follow_rock(bolt *t, const params *p, const steel *s, const tl_element_batch *b)
 {
     chain *c = &t->c;
-    uint32_t next = 0;
-    ways w;
-    for (int d = 0; d < 3; d++)
-        for (uint32_t k = 0; k < c->count; k++) {
-            w.rest[d][k] = b->rest[d][t->row[k]];
-            w.u[d][k] = b->u[d][t->row[k]];
+    double place[3][CHAIN_ROOM], moved[3][CHAIN_ROOM], longer[CHAIN_ROOM], cut[CHAIN_ROOM];
+    const double *rest[3], *u[3];
+    for (int d = 0; d < 3; d++) {
+        rest[d] = t->in_order ? b->rest[d] + t->row[0] : place[d];
+        u[d] = t->in_order ? b->u[d] + t->row[0] : moved[d];
+        if (!t->in_order) {
+            take(t, b->rest[d], place[d]);
+            take(t, b->u[d], moved[d]);
         }
-    stretch(t, &w);
+    }
+    stretch(t, rest, u, longer);
+    for (uint32_t n = 0; n < t->crossings; n++)
+        longer[t->cross[n].segment] = part_sides(t, &t->cross[n], b, s->active);
     c->rock[0] = b->state[ROCK][t->row[0]];
-    for (uint32_t k = 0; k + 1 < c->count; k++) {
-        const bool crosses = next < t->crossings && t->cross[next].segment == k;
-        c->rock[k + 1] = c->rock[k] + (crosses ? part_sides(t, &t->cross[next], b, s->active) : w.longer[k]);
-        next += crosses;
-    }
-    next = 0;
-    for (uint32_t k = 0; k + 1 < c->count; k++) {
-        const bool crosses = next < t->crossings && t->cross[next].segment == k;
+    for (uint32_t k = 0; k + 1 < c->count; k++)
+        c->rock[k + 1] = c->rock[k] + longer[k];
+    memcpy(c->gauge, t->h, (c->count - 1) * sizeof *t->h);
+    for (uint32_t n = 0; n < t->crossings; n++) {
+        const uint32_t k = t->cross[n].segment;
         const double before = k ? t->h[k - 1] : t->h[k], after = k + 2 < c->count ? t->h[k + 1] : t->h[k];
-        put_steel(c, k, p, s, t->h[k], gauge_of(before, t->h[k], after, crosses), b->state[CUT][t->row[k]] != 0);
-        next += crosses;
+        c->gauge[k] = gauge_of(before, t->h[k], after, true);
     }
+    take(t, b->state[CUT], cut);
+    if (c->count > 1)
+        put_all_steel(t, p, s, cut);
 }
 
 /* ---------------------------------------------------------------- acting ----------------- */
@@ -497,24 +559,68 @@ typedef struct books {
     double stored, lost;
 } books;
 
-static void keep_grout(const bolt *t, const tl_element_batch *b, uint32_t e, books *sum)
+/* What each spring of the grout, or of the steel, has slipped or yielded in this step, turned to heat and holds. */
+typedef struct spring_books {
+    double had[CHAIN_ROOM]; /* N, before */
+    double gives[CHAIN_ROOM], lost[CHAIN_ROOM], stored[CHAIN_ROOM];
+} spring_books;
+
+/* Fills them; `trial` are forces without a limit. Whether some gives. */
+TL_VECTORIZED static bool book_springs(spring_books *of, const double *restrict stiff, const double *restrict trial,
+                                       const double *restrict force, uint32_t count)
 {
-    const chain *c = &t->c;
-    double most = 0;
-    for (uint32_t k = 0; k < c->count; k++) {
-        const uint32_t i = t->row[k];
-        const double slips = c->hold[k] > 0 ? (c->grout_trial[k] - c->grout[k]) / c->hold[k] : 0;
-        sum->lost += 0.5 * (b->state[GROUT][i] + c->grout[k]) * slips;
-        sum->stored += c->hold[k] > 0 ? 0.5 * c->grout[k] * c->grout[k] / c->hold[k] : 0;
-        b->state[GROUT][i] = c->grout[k];
-        b->state[GROUT_SLIP][i] += slips;
-        b->state[STEEL][i] = c->w[k];
-        b->state[ROCK][i] = c->rock[k];
-        b->state[WORN][i] = c->worn[k];
-        b->flags[e] |= slips != 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
-        most = larger(most, fabs(b->state[GROUT_SLIP][i]));
+    double any = 0;
+#pragma omp simd reduction(+ : any)
+    for (uint32_t k = 0; k < count; k++) {
+        const bool holds = stiff[k] > 0;
+        const double gives = holds ? (trial[k] - force[k]) / stiff[k] : 0;
+        of->gives[k] = gives;
+        of->lost[k] = 0.5 * (of->had[k] + force[k]) * gives;
+        of->stored[k] = holds ? 0.5 * force[k] * force[k] / stiff[k] : 0;
+        any += gives != 0 ? 1 : 0;
     }
-    b->element_state[SLIP][e] = most;
+    return any > 0;
+}
+
+/* Adds a column to what there was, node by node. */
+TL_VECTORIZED static void add(double *restrict to, const double *restrict more, uint32_t count)
+{
+#pragma omp simd
+    for (uint32_t k = 0; k < count; k++)
+        to[k] += more[k];
+}
+
+/* The largest size. */
+static double largest(const double *of, uint32_t count)
+{
+    double most = 0;
+    for (uint32_t k = 0; k < count; k++)
+        most = larger(most, fabs(of[k]));
+    return most;
+}
+
+static void sum_books(const spring_books *of, uint32_t count, books *sum)
+{
+    for (uint32_t k = 0; k < count; k++) {
+        sum->lost += of->lost[k];
+        sum->stored += of->stored[k];
+    }
+}
+
+static void keep_grout(bolt *t, const tl_element_batch *b, uint32_t e, books *sum)
+{
+    chain *c = &t->c;
+    spring_books of;
+    take(t, b->state[GROUT], of.had);
+    b->flags[e] |= book_springs(&of, c->hold, c->grout_trial, c->grout, c->count) ? (uint32_t)TL_ELEMENT_YIELDED : 0;
+    sum_books(&of, c->count, sum);
+    add(c->slip, of.gives, c->count);
+    give(t, c->grout, b->state[GROUT]);
+    give(t, c->slip, b->state[GROUT_SLIP]);
+    give(t, c->w, b->state[STEEL]);
+    give(t, c->rock, b->state[ROCK]);
+    give(t, c->worn, b->state[WORN]);
+    b->element_state[SLIP][e] = largest(c->slip, c->count);
 }
 
 /* Counts the length of grout that has slipped. Where that is all on one side of a joint, and with a loss of bond, the
@@ -524,10 +630,10 @@ static void keep_bond(const bolt *t, const tl_element_batch *b, uint32_t e)
     const chain *c = &t->c;
     double slipped = 0, side = 0, side_slipped = 0;
     for (uint32_t k = 0, next = 0; k < c->count; k++) {
-        const double length = b->state[GROUTED][t->row[k]];
+        const double length = t->grouted[k];
         side += length;
-        side_slipped += c->worn[k] && c->residual[k] < c->bond[k] ? length : 0;
-        slipped += c->worn[k] ? length : 0;
+        side_slipped += c->worn[k] != 0 && c->residual[k] < c->bond[k] ? length : 0;
+        slipped += c->worn[k] != 0 ? length : 0;
         const bool crosses = next < t->crossings && t->cross[next].segment == k;
         if (!crosses && k + 1 < c->count)
             continue;
@@ -539,28 +645,36 @@ static void keep_bond(const bolt *t, const tl_element_batch *b, uint32_t e)
     b->element_state[SLIPPED][e] = slipped;
 }
 
-static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b, uint32_t e, books *sum)
+/* Cuts steel that strains too much: it bears nothing from the next step on. How many pieces are cut. */
+static double cut_steel(const bolt *t, const params *p, const tl_element_batch *b, uint32_t e)
 {
     const chain *c = &t->c;
-    double most = 0, cuts = 0;
+    double cuts = 0, *cut = b->state[CUT];
     for (uint32_t k = 0; k < c->count; k++) {
         const uint32_t i = t->row[k];
-        const bool last = k + 1 == c->count;
-        const double force = last ? 0 : c->tension[k], yields = last ? 0 : (c->tension_trial[k] - force) / c->stiff[k];
-        sum->lost += 0.5 * (b->state[TENSION][i] + force) * yields;
-        sum->stored += last ? 0 : 0.5 * force * force / c->stiff[k];
-        b->state[TENSION][i] = force;
-        b->state[PLASTIC][i] += yields;
-        b->flags[e] |= yields != 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
-        most = larger(most, fabs(force));
-        if (!last && fabs(c->w[k + 1] - c->w[k]) >= p->rupture_strain * c->gauge[k] && b->state[CUT][i] == 0) {
-            b->state[CUT][i] = 1; /* it bears nothing from the next step on */
+        if (k + 1 < c->count && fabs(c->w[k + 1] - c->w[k]) >= p->rupture_strain * c->gauge[k] && cut[i] == 0) {
+            cut[i] = 1;
             b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
         }
-        cuts += b->state[CUT][i];
+        cuts += cut[i];
     }
-    b->element_state[AXIAL][e] = most;
-    b->element_state[BREAKS][e] = cuts;
+    return cuts;
+}
+
+static void keep_steel(bolt *t, const params *p, const tl_element_batch *b, uint32_t e, books *sum)
+{
+    chain *c = &t->c;
+    const uint32_t last = c->count - 1;
+    spring_books of;
+    take(t, b->state[TENSION], of.had);
+    b->flags[e] |= book_springs(&of, c->stiff, c->tension_trial, c->tension, last) ? (uint32_t)TL_ELEMENT_YIELDED : 0;
+    sum_books(&of, last, sum);
+    add(c->plastic, of.gives, last);
+    c->tension[last] = 0;
+    give(t, c->tension, b->state[TENSION]);
+    give(t, c->plastic, b->state[PLASTIC]);
+    b->element_state[AXIAL][e] = largest(c->tension, last);
+    b->element_state[BREAKS][e] = cut_steel(t, p, b, e);
 }
 
 /* The mouth that moves by x presses the plate by (P' - P) / k; the rest of x crushes it or is a gap. */
@@ -663,6 +777,23 @@ static double work_on(const tl_element_batch *b, uint32_t e)
     return sum;
 }
 
+/* Cost only: numbers in a line of the cache. */
+#define LINE 8
+
+/* Has the columns of an element brought near, while another is worked on. */
+static void fetch(const tl_element_batch *b, uint32_t e)
+{
+    for (uint32_t i = b->start[e]; i < b->start[e + 1]; i += LINE) {
+        for (int k = 0; k < NODE_STATES; k++)
+            __builtin_prefetch(b->state[k] + i, 1);
+        for (int k = 0; k < 3; k++) {
+            __builtin_prefetch(b->rest[k] + i, 0);
+            __builtin_prefetch(b->u[k] + i, 0);
+            __builtin_prefetch(b->force[k] + i, 1);
+        }
+    }
+}
+
 static tl_status update(const void *self, const tl_element_batch *b, tl_report *report)
 {
     (void)report;
@@ -671,8 +802,10 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     bolt t;
     for (uint32_t e = 0; e < b->count; e++) {
         books sum = {0, 0};
+        if (e + 1 < b->count)
+            fetch(b, e + 1);
         lay(&t, p, &s, b, e);
-        const bool whole = t.c.count == b->start[e + 1] - b->start[e];
+        const bool whole = t.in_order;
         const double before = whole ? 0 : work_on(b, e);
         if (t.c.count > 0) {
             follow_rock(&t, p, &s, b);

@@ -78,8 +78,8 @@ static bool wear(chain *c)
 {
     bool wears = false;
     for (uint32_t k = 0; k < c->count; k++)
-        if (!c->worn[k] && fabs(c->grout_trial[k]) > c->bond[k]) {
-            c->worn[k] = true;
+        if (c->worn[k] == 0 && fabs(c->grout_trial[k]) > c->bond[k]) {
+            c->worn[k] = 1;
             c->bears[k] = c->residual[k];
             c->grout[k] = within(c->grout_trial[k], c->residual[k]);
             wears = wears || c->residual[k] < c->bond[k];
@@ -175,10 +175,13 @@ static void find_step(const chain *c, double *step)
     const double pivot = own + left.before * left.alone + right.before * right.alone;
     const double carried = c->off[middle] + left.part * left.carried + right.part * right.carried;
     step[middle] = pivot > 0 ? carried / pivot : 0;
-    for (uint32_t k = middle; k-- > 0;)
-        step[k] += over[k] * step[k + 1];
-    for (uint32_t k = middle + 1; k < n; k++)
-        step[k] += over[k] * step[k - 1];
+    double before = step[middle], after = before;
+    for (uint32_t k = middle, j = middle + 1; k > 0; j++) { /* both ways at a time */
+        k--;
+        step[k] = before = step[k] + over[k] * before;
+        if (j < n)
+            step[j] = after = step[j] + over[j] * after;
+    }
 }
 
 /* The unbalance along a step, J: it falls to 0 at the best part of it. */

@@ -138,10 +138,10 @@ TL_VECTORIZED static void act(const half_space *behind, const tl_element_batch *
     }
 }
 
-/* Puts what the nodes of element e, from lane `first` of the tile on, do in a step into its books. */
-static void book(const half_space *h, const tl_element_batch *b, uint32_t e, tl_vec3 in, const tile *t, uint32_t first)
+/* Puts what the nodes of element e, from lane `first` of the tile on, do in a step into its books. `per`: 1/s. */
+static void book(const half_space *h, const tl_element_batch *b, uint32_t e, tl_vec3 in, double per, const tile *t,
+                 uint32_t first)
 {
-    const double per = b->dt > 0 ? 1 / b->dt : 0;
     const tl_vec3 n = {t->normal[0][first], t->normal[1][first], t->normal[2][first]};
     double stored = 0, lost = 0, work = 0, area = 0;
     bool gone = false; /* a part of the block, and with it what the springs there hold */
@@ -174,6 +174,7 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     (void)report;
     const face_kind *kind = self;
     const tl_vec3 in = half_space_came(kind->wave, b->time, b->dt);
+    const double per = b->dt > 0 ? 1 / b->dt : 0;
     double *const *of = b->element_state;
     tile t;
     for (uint32_t begin = 0, end; begin < b->count; begin = end) {
@@ -186,7 +187,7 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
                     t.normal[k][i] = of[QUIET_NORMAL_X + k][e];
         act(&h, b, first, b->start[end] - first, in, &t);
         for (uint32_t e = begin; e < end; e++)
-            book(&h, b, e, in, &t, b->start[e] - first);
+            book(&h, b, e, in, per, &t, b->start[e] - first);
     }
     return TL_OK;
 }
