@@ -18,6 +18,7 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <talus/workers.h>
+#include <time.h>
 #include <unistd.h>
 #ifdef __linux__
 #include <sys/prctl.h>
@@ -29,6 +30,9 @@
 #define MOST_SECONDS 1e6
 /* Constant: bytes of the size in front of an answer. */
 #define HEAD sizeof(uint64_t)
+/* Cost only: how often threads that end are looked for once more, and after how many nanoseconds. */
+#define MOMENTS 100
+#define MOMENT 1000000
 
 /* Constant: threads of a process that has started none. The thread sanitizer has one of its own. */
 #define OWN_THREADS 1
@@ -124,6 +128,18 @@ static unsigned count_threads(void)
     return count > 0 ? count : OWN_THREADS;
 }
 
+/* The same once threads that end have gone: the system lists one for a moment after it was waited for. */
+static unsigned count_lasting_threads(void)
+{
+    const struct timespec moment = {.tv_nsec = MOMENT};
+    unsigned threads = count_threads();
+    for (int i = 0; threads > OWN_THREADS && i < MOMENTS; i++) {
+        nanosleep(&moment, NULL);
+        threads = count_threads();
+    }
+    return threads;
+}
+
 static tl_status fork_worker(tl_workers *w, unsigned index, tl_error *error)
 {
     int pair[2];
@@ -155,7 +171,7 @@ tl_status tl_workers_start(unsigned count, tl_worker_fn work, void *user, tl_wor
     *workers = NULL;
     if (count < 1 || count > TL_MOST_WORKERS)
         return tl_fail(error, TL_E_ARGUMENT, "workers = %u is outside [1, %d]", count, TL_MOST_WORKERS);
-    const unsigned threads = count_threads();
+    const unsigned threads = count_lasting_threads();
     if (threads > OWN_THREADS)
         return tl_fail(error, TL_E_STATE,
                        "%u other threads run, of a model with several threads or of a screen, and workers cannot be "

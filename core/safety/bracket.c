@@ -1,11 +1,9 @@
 /* bracket.c - which factor of a grid a search tries next.
  *
  * A bracket is widened, twice as far each time, until one end holds and the other fails. Then it is halved until these
- * are neighbours. */
+ * are neighbours. Trials that begin with the last one that holds may fail from far below, and hold from their
+ * neighbour: the one at the upper end is then made once more from there. */
 #include "safety/bracket.h"
-
-/* Limit: places that are looked for ahead. */
-#define MOST_AHEAD 256
 
 int64_t tl_bracket_next(tl_bracket *b)
 {
@@ -22,35 +20,38 @@ int64_t tl_bracket_next(tl_bracket *b)
         b->width *= 2;
         return b->fails - b->width > b->lowest ? b->fails - b->width : b->lowest;
     }
-    return some_holds && b->fails - b->holds > 1 ? b->holds + (b->fails - b->holds) / 2 : -1;
+    if (b->fails - b->holds > 1)
+        return b->holds + (b->fails - b->holds) / 2;
+    return b->sure ? -1 : b->fails;
+}
+
+bool tl_bracket_is_sure(const tl_bracket *b, int64_t at)
+{
+    return at == b->holds + 1 || !b->by_steps;
 }
 
 void tl_bracket_take(tl_bracket *b, int64_t at, bool holds)
 {
     b->tried++;
-    if (holds)
-        b->holds = at;
-    else
+    if (!holds) {
+        b->sure = tl_bracket_is_sure(b, at);
         b->fails = at;
+        return;
+    }
+    b->holds = at;
+    if (b->fails > at)
+        return;
+    b->fails = b->last + 1; /* it failed from farther below only */
+    b->width = 1;
 }
 
 size_t tl_bracket_ahead(const tl_bracket *b, int64_t *places, size_t most)
 {
-    tl_bracket open[MOST_AHEAD]; /* searches as they may be, soonest first */
-    size_t count = 0, begin = 0, end = 0;
-    open[end++] = *b;
-    while (begin < end && count < most) {
-        tl_bracket now = open[begin++];
-        const int64_t at = tl_bracket_next(&now);
-        bool listed = false;
-        for (size_t i = 0; i < count; i++)
-            listed = listed || places[i] == at;
-        if (at >= 0 && !listed)
-            places[count++] = at;
-        for (int holds = 0; at >= 0 && holds < 2 && end < MOST_AHEAD; holds++) {
-            open[end] = now;
-            tl_bracket_take(&open[end++], at, holds > 0);
-        }
+    tl_bracket now = *b;
+    size_t count = 0;
+    for (int64_t at = tl_bracket_next(&now); at >= 0 && count < most; at = tl_bracket_next(&now)) {
+        places[count++] = at;
+        tl_bracket_take(&now, at, false);
     }
     return count;
 }

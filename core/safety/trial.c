@@ -1,8 +1,14 @@
 /* trial.c - whether a model comes to rest with its strengths divided by a factor.
  *
  * A copy of the model comes to rest with its strengths raised by 1 / TL_LEAST_FACTOR. Elastic joints settle then, and
- * nothing slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to
- * rest (cycle/relax.c) or something moves on.
+ * nothing slips. This copy is the base. A trial has the strengths of the model divided by its factor. It begins with a
+ * copy of the last trial that rests, or of the base. It comes to rest (cycle/relax.c) or something moves on.
+ *
+ * Friction bears the same weight by many sets of forces. Which of them blocks slip into hangs on the way there, and
+ * where strengths are lowered at once by much, on rounding as well. A trial that rests has found one that bears. One
+ * that fails has not, for it may have swung past them. So what fails counts once strengths were lowered step by step,
+ * and by no more than STEP at the last. Zones yield by one way only, and each trial would strain them further: where
+ * blocks deform, each begins with the base.
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
@@ -12,15 +18,9 @@
  * hold more and more goes on as well, though a bolt will stop it: it does not fail as long as the rise of their force
  * would bear what drives it after CAUGHT of its radius.
  *
- * Soft joints turn what lies on them as they settle, and their motion takes many steps. So joints with which u is more
- * than SOFT of a block are made stiffer in all copies: with the same forces, all ways become shorter by as much.
- *
- * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
- * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is confirmed: made
- * again with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as
- * many u. A search confirms its last trial that rests, and others only where that one fails (safety/narrow.c).
- *
- * A copy with stiffer joints begins as the model was cut (cycle/put_back.c), where that may be.
+ * Soft joints turn what lies on them as they settle, and what fails may meet something before it has gone many u. So
+ * joints with which u is more than SOFT of a block are made stiffer in all copies: with the same forces, all ways
+ * become shorter by as much. These copies begin as the model was cut (cycle/put_back.c), where that may be.
  *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone SUSPECT u. While joints settle
  * and blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
@@ -47,6 +47,7 @@
 #include "model/options.h"
 #include "model/rows.h"
 #include "safety/asked.h"
+#include "state/restore.h"
 #include "zone/solids.h"
 
 #include <math.h>
@@ -62,15 +63,12 @@
 #define SUSPECT 10.0
 /* Tolerance: way over u from which on a body fails anyway. */
 #define FAR 300.0
-/* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
-#define SLIPS 1.0
-/* Tolerance: stiffness of joints, over that before, by which slip that springs ask for is told from motion that
- * something ends. With it a body goes GROWN times as many u or more. STIFFEST is the largest one tried. */
-#define STIFFER 10.0
-#define GROWN 2.0
-#define STIFFEST 1000.0
 /* Tolerance: u over the radius of the largest body above which joints are made stiffer. Test: lua/test_safety_rock. */
-#define SOFT 1e-4
+#define SOFT 1e-5
+/* Cost only: by what joints are made stiffer until they are not soft. */
+#define STIFFER 10.0
+/* Limit: of stiffness of joints over that of the model. */
+#define STIFFEST 1e7
 /* Tolerance: way over the radius of the largest body up to which blocks have only settled, and may go back to where
  * they were cut. Test: lua/test_safety_rock. */
 #define SETTLED 0.05
@@ -90,12 +88,22 @@
 #define ALONG 0.3
 /* Tolerance: sum of contact forces over the weight below which nothing bears a body. */
 #define BARE 0.01
+/* Tolerance: the factor of a trial that fails over that of the one before it, at most.
+ * Test: lua/test_safety_random. */
+#define STEP 1.02
 
 void tl_fall_free(tl_fall *fall)
 {
     free(fall->ids);
     free(fall->small);
     *fall = (tl_fall){.ids = NULL};
+}
+
+void tl_trial_ahead_free(tl_trial_ahead *made)
+{
+    tl_fall_free(&made->fall);
+    free(made->state);
+    made->state = NULL;
 }
 
 static void hush(void *user, const char *text)
@@ -142,37 +150,6 @@ static tl_status check_rest(const tl_trials *t, tl_model *copy)
     return tl_fail(&t->asked->error, TL_E_STATE,
                    "%s: the model moves (block %u at %.3g m/s): bring it to rest first, %s", t->what, b->id[mover],
                    tl_v3_norm(b->v[mover]), tl_words(t->asked, "with model:relax{}", "with tl_model_relax()"));
-}
-
-/* ---------------------------------------------------------------- made ahead ------------- */
-
-tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor)
-{
-    for (size_t i = 0; i < t->ahead_count; i++)
-        if (t->ahead[i].trial.factor == factor)
-            return &t->ahead[i];
-    return NULL;
-}
-
-/* Hands over a trial that was made ahead; false: there is none. */
-static bool take_made(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
-{
-    tl_trial_ahead *made = tl_trials_made(t, factor);
-    if (!made)
-        return false;
-    *trial = made->trial;
-    *fall = made->fall;
-    *made = t->ahead[--t->ahead_count];
-    t->cycles += trial->cycles;
-    return true;
-}
-
-/* Forgets trials that were made ahead: those to come begin with another copy. */
-static void forget_made(tl_trials *t)
-{
-    for (size_t i = 0; i < t->ahead_count; i++)
-        tl_fall_free(&t->ahead[i].fall);
-    t->ahead_count = 0;
 }
 
 /* ---------------------------------------------------------------- a trial ---------------- */
@@ -496,10 +473,6 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool weakened, tl_safety_t
         if (status == TL_OK)
             status = judge(&w, copy, &r, trial, fall, &over);
     }
-    t->moved = 0;
-    for (uint32_t body = 0; status == TL_OK && body < copy->bodies.table.rows; body++)
-        if (tl_body_is_free(copy, body))
-            t->moved = fmax(t->moved, gone_of(&w, copy, body) / t->settles);
     watch_end(&w);
     return status;
 }
@@ -520,10 +493,29 @@ static tl_status measure(tl_trials *t, int64_t settled)
     return TL_OK;
 }
 
+/* Forgets trials that were made ahead: those to come begin with another copy. */
+static void forget_made(tl_trials *t)
+{
+    for (size_t i = 0; i < t->ahead_count; i++)
+        tl_trial_ahead_free(&t->ahead[i]);
+    t->ahead_count = 0;
+}
+
+/* Forgets the last trial that rests: the next one begins with the base. */
+static void begin_anew(tl_trials *t)
+{
+    forget_made(t);
+    if (t->from)
+        tl_model_destroy(t->from);
+    t->from = NULL;
+    t->reached = TL_LEAST_FACTOR;
+    t->small_count = 0;
+}
+
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
-    forget_made(t);
+    begin_anew(t);
     tl_status status = settle(t, t->base, false, &trial, fall);
     if (status == TL_OK && trial.holds)
         status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
@@ -536,6 +528,7 @@ static tl_status make_base(tl_trials *t, tl_fall *fall, bool *rests)
 {
     tl_safety_trial trial;
     t->base = NULL;
+    begin_anew(t);
     t->measured = false;
     t->window = 100;
     tl_status status = copy_of(t, t->asked, &t->base);
@@ -604,117 +597,126 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
     return status;
 }
 
-/* Makes a trial on a copy. */
+bool tl_trials_by_steps(const tl_trials *t)
+{
+    return !tl_model_deforms(t->base);
+}
+
+/* A copy that has come to rest at a factor, after what `fall` lists as small had failed: the next trial begins with it.
+ */
+static tl_status keep(tl_trials *t, tl_model *copy, double factor, const tl_fall *fall)
+{
+    if (!tl_grow(&t->small, &t->small_capacity, fall->small_count + 1, sizeof *t->small))
+        return tl_fail_memory(&t->asked->error);
+    begin_anew(t);
+    if (fall->small_count > 0)
+        memcpy(t->small, fall->small, fall->small_count * sizeof *t->small);
+    t->small_count = fall->small_count;
+    t->from = copy;
+    t->reached = factor;
+    return TL_OK;
+}
+
+/* Lists what was small and failed before. */
+static tl_status begin_fall(const tl_trials *t, tl_fall *fall)
+{
+    tl_fall_free(fall);
+    if (!tl_grow(&fall->small, &fall->small_capacity, t->small_count + 1, sizeof *fall->small))
+        return tl_fail_memory(&t->asked->error);
+    if (t->small_count > 0)
+        memcpy(fall->small, t->small, t->small_count * sizeof *fall->small);
+    fall->small_count = t->small_count;
+    return TL_OK;
+}
+
+/* Makes a trial at once. */
 static tl_status make_one(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
     tl_model *copy = NULL;
-    tl_status status = copy_of(t, t->base, &copy);
+    tl_status status = begin_fall(t, fall);
+    if (status == TL_OK)
+        status = copy_of(t, t->from ? t->from : t->base, &copy);
     if (status == TL_OK)
         status = weaken(t, copy, factor);
     if (status == TL_OK)
         status = settle(t, copy, true, trial, fall);
-    if (copy)
+    if (status == TL_OK && trial->holds && tl_trials_by_steps(t))
+        status = keep(t, copy, factor, fall);
+    if (copy && copy != t->from)
         tl_model_destroy(copy);
     return status;
 }
 
-/* Takes out of a copy of the model what is no longer in the base, and holds what is held there. */
-static tl_status follow_base(const tl_trials *t, tl_model *copy)
+/* STEP to the power of 2^k, and 1 for k < 0. */
+static double below(int k)
 {
-    const tl_blocks *blocks = &copy->blocks;
-    tl_id *gone = malloc((blocks->table.rows + 1) * sizeof *gone),
-          *held = malloc((blocks->table.rows + 1) * sizeof *held);
-    size_t goes = 0, holds = 0;
-    if (!gone || !held) {
-        free(gone);
-        free(held);
-        return tl_fail_memory(&t->asked->error);
-    }
-    for (uint32_t row = 0; row < blocks->table.rows; row++) {
-        const uint32_t in_base = tl_block_row_quiet(t->base, blocks->id[row]);
-        if (in_base == TL_NO_ROW)
-            gone[goes++] = blocks->id[row];
-        else if (tl_body_is_free(copy, blocks->body[row]) && !tl_body_is_free(t->base, t->base->blocks.body[in_base]))
-            held[holds++] = blocks->id[row];
-    }
-    tl_status status = goes > 0 ? tl_blocks_delete(copy, gone, goes) : TL_OK;
-    if (status == TL_OK && holds > 0)
-        status = tl_blocks_fix(copy, held, holds, TL_FIX_ALL);
-    free(gone);
-    free(held);
-    return told(t, copy, status);
+    double over = STEP;
+    for (int i = 0; i < k; i++)
+        over *= over;
+    return k < 0 ? 1 : over;
 }
 
-/* Makes a trial with stiffer joints on a copy of the model as it was given: one of the base has settled on soft joints,
- * and what fits its blocks is off by that. `s` has their stiffness. *made: the copy came to rest at first. */
-static tl_status make_stiffer(const tl_trials *t, tl_trials *s, double factor, tl_safety_trial *trial, tl_fall *fall,
-                              bool *made)
+/* Makes a trial that has failed at once again, by steps, each half as long as the one before. */
+static tl_status make_by_steps(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
-    tl_fall loose = {.ids = NULL};
-    s->base = NULL;
-    s->cycles = 0;
-    s->measured = false;
-    tl_status status = copy_of(s, s->asked, &s->base);
-    if (status == TL_OK)
-        status = follow_base(t, s->base);
-    if (status == TL_OK && t->may_put_back)
-        tl_put_back(s->base);
-    if (status == TL_OK)
-        status = weaken(s, s->base, TL_LEAST_FACTOR);
-    if (status == TL_OK)
-        status = settle(s, s->base, false, trial, &loose);
-    tl_fall_free(&loose);
-    *made = status == TL_OK && trial->holds;
-    if (*made)
-        status = measure(s, trial->cycles);
-    if (*made && status == TL_OK)
-        status = weaken(s, s->base, factor);
-    if (*made && status == TL_OK)
-        status = settle(s, s->base, true, trial, fall);
-    if (s->base)
-        tl_model_destroy(s->base);
-    return status;
-}
-
-/* Makes a trial that has come to rest again, with stiffer and stiffer joints while it rests, and may rest only because
- * they are soft. */
-static tl_status confirm(tl_trials *t, tl_safety_trial *trial, tl_fall *fall)
-{
-    const tl_safety_trial rests = *trial;
     int64_t cycles = trial->cycles;
-    double moved = fall->moved, before = 0;
     tl_status status = TL_OK;
-    for (tl_trials s = *t;
-         trial->holds && moved > fmax(SLIPS, GROWN * before) && s.stiffness * STIFFER <= STIFFEST * t->stiffness;) {
-        bool made;
-        tl_fall_free(fall);
-        s.stiffness *= STIFFER;
-        before = moved;
-        status = make_stiffer(t, &s, rests.factor, trial, fall, &made);
-        moved = s.moved;
-        cycles += s.cycles;
-        t->cycles += s.cycles;
-        if (status == TL_E_ARGUMENT) /* a law has no stiffness that may be higher */
-            status = TL_OK;
-        if (status != TL_OK)
-            break;
-        if (!made) { /* stiff joints say nothing */
-            *trial = rests;
-            break;
-        }
+    int k = 0;
+    while (factor / below(k + 1) > t->reached)
+        k++;
+    trial->holds = 1;
+    for (; k >= -1 && status == TL_OK && trial->holds; k--) {
+        status = make_one(t, factor / below(k), trial, fall);
+        cycles += trial->cycles;
     }
     trial->cycles = cycles;
-    trial->factor = rests.factor;
     return status;
 }
 
-static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+static tl_status make(tl_trials *t, double factor, bool sure, tl_safety_trial *trial, tl_fall *fall)
 {
     tl_status status = make_one(t, factor, trial, fall);
+    if (status == TL_OK && sure && !trial->holds && tl_trials_by_steps(t) && factor / STEP > t->reached)
+        status = make_by_steps(t, factor, trial, fall);
     trial->factor = factor;
-    fall->moved = t->moved;
-    if (status == TL_OK && t->confirms)
-        status = confirm(t, trial, fall);
+    return status;
+}
+
+/* Takes over a copy that has come to rest in another process. */
+static tl_status take_state(tl_trials *t, tl_trial_ahead *made)
+{
+    tl_model *copy;
+    tl_status status = tl_model_of_bytes(&made->state, made->state_bytes, &copy, &t->asked->error);
+    if (status != TL_OK)
+        return status;
+    tl_model_log(copy, hush, NULL);
+    tl_model_speak_lua(copy, t->asked->speaks_lua);
+    copy->interrupt_asked = t->asked->interrupt_asked;
+    status = keep(t, copy, made->trial.factor, &made->fall);
+    if (status != TL_OK)
+        tl_model_destroy(copy);
+    return status;
+}
+
+tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor)
+{
+    for (size_t i = 0; i < t->ahead_count; i++)
+        if (t->ahead[i].trial.factor == factor)
+            return &t->ahead[i];
+    return NULL;
+}
+
+/* Hands over a trial that was made ahead. */
+static tl_status take_made(tl_trials *t, tl_trial_ahead *at, tl_safety_trial *trial, tl_fall *fall)
+{
+    tl_trial_ahead made = *at;
+    *at = t->ahead[--t->ahead_count];
+    t->cycles += made.trial.cycles;
+    const tl_status status = made.state ? take_state(t, &made) : TL_OK;
+    *trial = made.trial;
+    *fall = made.fall;
+    made.fall = (tl_fall){.ids = NULL};
+    tl_trial_ahead_free(&made);
     return status;
 }
 
@@ -732,35 +734,20 @@ static tl_status finish(tl_trials *t, tl_status status, const tl_safety_trial *t
     return status;
 }
 
-tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+tl_status tl_trials_try(tl_trials *t, double factor, bool sure, tl_safety_trial *trial, tl_fall *fall)
 {
     *fall = (tl_fall){.ids = NULL};
-    tl_status status = TL_OK;
-    if (!take_made(t, factor, trial, fall))
-        status = make(t, factor, trial, fall);
+    tl_trial_ahead *made = tl_trials_made(t, factor);
+    const tl_status status = made ? take_made(t, made, trial, fall) : make(t, factor, sure, trial, fall);
     return finish(t, status, trial, fall);
-}
-
-tl_status tl_trials_confirm(tl_trials *t, double factor, double moved, tl_safety_trial *trial, tl_fall *fall)
-{
-    *fall = (tl_fall){.moved = moved};
-    *trial = (tl_safety_trial){.factor = factor, .holds = 1, .why = "at rest"};
-    const tl_status status = confirm(t, trial, fall);
-    return status == TL_OK && trial->cycles == 0 ? status : finish(t, status, trial, fall);
-}
-
-void tl_trials_confirm_all(tl_trials *t, bool all)
-{
-    if (t->confirms != all)
-        forget_made(t);
-    t->confirms = all;
 }
 
 void tl_trials_end(tl_trials *t)
 {
+    begin_anew(t);
     if (t->base)
         tl_model_destroy(t->base);
-    forget_made(t);
+    free(t->small);
     free(t->ahead);
     free(t->which);
     t->ahead = NULL;

@@ -52,6 +52,13 @@ const char *tl_chunk_name(char name[TL_CHUNK_NAME], const char *format, ...)
 
 /* ---------------------------------------------------------------- writing ---------------- */
 
+static void put_head(tl_archive_writer *w)
+{
+    tl_archive_head head = {.format = TL_ARCHIVE_FORMAT, .order = TL_ARCHIVE_ORDER};
+    memcpy(head.magic, magic, sizeof magic);
+    tl_output_put(&w->out, &head, sizeof head);
+}
+
 tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error)
 {
     *w = (tl_archive_writer){.buffer = NULL};
@@ -59,9 +66,18 @@ tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *err
     if (status != TL_OK)
         return status;
     w->out.durable = true;
-    tl_archive_head head = {.format = TL_ARCHIVE_FORMAT, .order = TL_ARCHIVE_ORDER};
-    memcpy(head.magic, magic, sizeof magic);
-    tl_output_put(&w->out, &head, sizeof head);
+    put_head(w);
+    return TL_OK;
+}
+
+tl_status tl_archive_begin_in_memory(tl_archive_writer *w, char **bytes, size_t *length, tl_error *error)
+{
+    *w = (tl_archive_writer){.buffer = NULL, .in_memory = true};
+    *bytes = NULL;
+    w->out.file = open_memstream(bytes, length);
+    if (!w->out.file)
+        return tl_fail_memory(error);
+    put_head(w);
     return TL_OK;
 }
 
@@ -129,6 +145,11 @@ tl_status tl_archive_end(tl_archive_writer *w, tl_error *error)
 {
     const uint64_t sum = w->sum;
     tl_archive_put(w, "end", &sum, sizeof sum, 1);
+    if (w->in_memory) {
+        const bool bad = w->lost || w->out.code != 0;
+        free(w->buffer);
+        return fclose(w->out.file) == 0 && !bad ? TL_OK : tl_fail_memory(error);
+    }
     tl_status status = w->lost ? tl_fail_memory(error) : tl_output_finish(&w->out, error);
     if (status == TL_OK)
         status = tl_output_commit(&w->out, error);

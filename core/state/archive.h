@@ -23,11 +23,14 @@ typedef struct tl_archive_writer {
     size_t buffer_bytes;
     uint64_t sum; /* of the checksums so far */
     uint64_t chunks;
-    bool lost; /* out of memory */
+    bool lost;      /* out of memory */
+    bool in_memory; /* there is no file */
 } tl_archive_writer;
 
 /* Opens the archive that is to become `path`, durably. */
 tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error);
+/* Begins an archive in memory: *bytes, to be freed, and *length once it has ended. */
+tl_status tl_archive_begin_in_memory(tl_archive_writer *w, char **bytes, size_t *length, tl_error *error);
 /* Adds a chunk of `items` items of `size` bytes; what fails is found by tl_archive_end. */
 void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size, size_t items);
 /* Adds the bytes of a text. */

@@ -733,3 +733,16 @@ tl_status tl_model_restore(const char *path, int64_t threads, tl_drive_again_fn 
     tl_archive_close(&a);
     return status;
 }
+
+tl_status tl_model_of_bytes(unsigned char **bytes, size_t length, tl_model **model, tl_error *error)
+{
+    tl_archive a;
+    *model = NULL;
+    tl_status status = tl_archive_of_bytes(&a, "a copy in memory", *bytes, length, error);
+    *bytes = NULL;
+    if (status != TL_OK)
+        return status;
+    status = tl_model_restore_archive(&a, 1, NULL, NULL, model, error);
+    tl_archive_close(&a);
+    return status;
+}

@@ -1,5 +1,7 @@
-/* save.c - a model into a file: all entries of its modules by their names, and what has owners of its own. Nothing in
- * the model changes by it, so that it makes no difference to a run when it is saved. */
+/* save.c - a model into a file, or into bytes: all entries of its modules by their names, and what has owners of its
+ * own. Nothing in the model changes by it, so that it makes no difference to a run when it is saved. */
+#include "state/save.h"
+
 #include "base/entries.h"
 #include "base/signals.h"
 #include "contact/store.h"
@@ -147,5 +149,24 @@ tl_status tl_model_save(tl_model *m, const char *path)
     tl_signals_hold(&before, false);
     status = save_under(m, path);
     tl_signals_release(&before);
+    return status;
+}
+
+tl_status tl_model_bytes(tl_model *m, unsigned char **bytes, size_t *length)
+{
+    tl_archive_writer w;
+    char *made;
+    *bytes = NULL;
+    tl_status status = prepare(m);
+    if (status == TL_OK)
+        status = tl_archive_begin_in_memory(&w, &made, length, &m->error);
+    if (status != TL_OK)
+        return status;
+    save_all(&w, m);
+    status = tl_archive_end(&w, &m->error);
+    if (status == TL_OK)
+        *bytes = (unsigned char *)made;
+    else
+        free(made);
     return status;
 }

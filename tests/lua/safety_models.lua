@@ -8,6 +8,7 @@ local models = {}
 local NONE = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }
 local DENSITY, GRAVITY = 2000, 10
 local APEX = { 0, 0.5, 1 } -- of a wedge: where its planes meet the top of the box
+local DRAIN_GAP = 0.05     -- m
 
 -- The upward normal of an attitude {dip, dip direction}, degrees.
 local function normal_of(attitude)
@@ -109,7 +110,7 @@ function models.wedge(one, form)
     if one.water then
         for joint, pressure in pairs(one.water) do
             if pressure > 0 then
-                model:water("uniform", { pressure = view.stress(pressure), joints = { joint } })
+                model:water("uniform", { pressure = view.stress(pressure), drain_gap = DRAIN_GAP / length, joints = { joint } })
             end
         end
     end

@@ -10,6 +10,16 @@ for seed = 1, check.cases(4) do
     check.holds(models.compare_slope(seed))
 end
 
+-- Strengths that are lowered by much at once make fail what rests when they are lowered step by step: a coarse search ends with steps as
+-- fine as those of a fine one, and finds no lower factor.
+for _, of in ipairs { { seed = 47, coarse = 0.1 }, { seed = 53, coarse = 0.05 } } do
+    local slope = models.slope(models.draw_slope(of.seed))
+    local fine = slope:factor_of_safety { from = 0.1, to = 20, resolution = 0.02, least_volume = 0.1 }
+    local coarse = slope:factor_of_safety { from = 0.1, to = 20, resolution = of.coarse, least_volume = 0.1 }
+    check.holds(coarse.upper > fine.factor, string.format("slope %d: at most %.3f by steps of %g, and %.3f by steps of 0.02", of.seed,
+        coarse.upper, of.coarse, fine.factor))
+end
+
 -- Nothing asked changes the model, whatever ends a search; what is not decided is told.
 local function ends(model, least_volume)
     local before = model:state_hash()
