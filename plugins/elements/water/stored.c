@@ -12,10 +12,10 @@
  *
  * for the time since the last call, with the conductances of now and dC/dt the same all the while. That time has parts
  * of h. An implicit step of h has one solution: q grows with phi, as X does. It is found by active sets (Hintermueller,
- * Ito and Kunisch 2002). First no joint is taken for empty: those that are full and those that are partly so are told
- * apart until none changes, and potentials fall from try to try. Then those with V < 0 become empty, and so on: potentials
- * fall further, so joints that are empty stay so. A step begins with what was empty before; if that does not stand, with
- * none.
+ * Ito and Kunisch 2002). First no joint is taken for empty. Those that are full and those that are partly so are told
+ * apart until none changes, and potentials fall from try to try. Then those with V < 0 become empty, and so on.
+ * Potentials fall further, so joints that are empty stay so. A step begins with what was empty before. If that does
+ * not stand, it begins with none.
  *
  * Of each part one step gives phi(h), and two of h/2 give phi(h/2, h/2). Both are stable for any h. Where each joint
  * stays what it is
@@ -143,8 +143,8 @@ static void pour(story *s, const moment *from, const double *x, double h, double
         surplus[e] = takes_part(s, e) ? from->surplus[e] - h * (s->out[e] + s->swell[e]) : 0;
 }
 
-/* An implicit step of h, whose end is `left` s before now. `settled` becomes false where it is not known in the end what
- * joints are. false: the equations do not converge. */
+/* An implicit step of h, whose end is `left` s before now. `settled` becomes false where it is not known in the end
+ * what joints are. false: the equations do not converge. */
 static bool take_step(story *s, const moment *from, moment *to, double h, double left, bool *settled)
 {
     bool warm = true;
