@@ -5,9 +5,9 @@
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
  * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
  * same block. An element with a new key takes those of the nearest old one of its call, between three nodes linearly.
- * States that are RESET are those that `place` gives. One of the whole that is SPLIT goes with the weights of the nodes.
- * It comes from the old element with the key, or else from that whose middle is nearest. Where nothing has moved all
- * are the same to the bit. */
+ * States that are RESET are those that `place` gives. One of the whole that is SPLIT goes with the weights of the
+ * nodes. It comes from the old element with the key, or else from that whose middle is nearest. Where nothing has moved
+ * all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
