@@ -98,22 +98,41 @@ struct tl_watch {
     uint32_t failing_point; /* the gridpoint by which it fails, or TL_NO_ROW */
 };
 
+/* How far bodies reach across, m: twice the largest distance of their centroids from the mean of these; of deformable
+ * ones, the distance of what is farthest of them. `free`: these bodies; NULL: those that deform. */
+static double reach(const tl_model *m, const uint8_t *free)
+{
+    const tl_bodies *b = &m->bodies;
+    tl_addends sum[3] = {{.count = 0}, {.count = 0}, {.count = 0}};
+    double count = 0, farthest = 0;
+    for (uint32_t body = 0; body < b->table.rows; body++)
+        if (free ? free[body] : b->mesh[body]) {
+            const tl_vec3 x = tl_body_place(b, body);
+            tl_addends_put(&sum[0], x.x);
+            tl_addends_put(&sum[1], x.y);
+            tl_addends_put(&sum[2], x.z);
+            count++;
+        }
+    const tl_vec3 sums = {tl_addends_sum(&sum[0]), tl_addends_sum(&sum[1]), tl_addends_sum(&sum[2])};
+    const tl_vec3 mean = tl_v3_scale(count > 0 ? 1 / count : 0, sums);
+    for (uint32_t body = 0; body < b->table.rows; body++)
+        if (free ? free[body] : b->mesh[body])
+            farthest =
+                fmax(farthest, tl_v3_norm(tl_v3_sub(tl_body_place(b, body), mean)) + (free ? 0 : b->radius[body]));
+    return 2 * farthest;
+}
+
 /* Number of blocks of the mean size across the free bodies. */
 static double blocks_on_end(const tl_watch *w, const tl_model *m)
 {
-    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = tl_v3_neg(low);
     tl_addends sizes = {.count = 0};
     double count = 0;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        if (!w->free[body])
-            continue;
-        tl_vec3 x = tl_body_place(&m->bodies, body);
-        low = tl_v3(fmin(low.x, x.x), fmin(low.y, x.y), fmin(low.z, x.z));
-        high = tl_v3(fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z));
-        tl_addends_put(&sizes, tl_body_size(m, body));
-        count++;
-    }
-    return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / tl_addends_sum(&sizes) : 1;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (w->free[body]) {
+            tl_addends_put(&sizes, tl_body_size(m, body));
+            count++;
+        }
+    return count > 0 ? 1 + reach(m, w->free) * count / tl_addends_sum(&sizes) : 1;
 }
 
 static void begin_leg(leg *l, tl_vec3 at, double time)
@@ -316,19 +335,15 @@ static void add_segments(const tl_model *m, tl_addends *forces, tl_addends *clos
 static double settlement_of_zones(const tl_model *m)
 {
     const struct tl_zones *z = m->zones;
-    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = tl_v3_neg(low);
     double stored = 0, stiff = 0;
     for (size_t k = 0; z && k < z->mesh_count; k++) {
         const tl_body_mesh *mesh = &z->mesh[k];
-        const tl_vec3 x = tl_body_place(&m->bodies, mesh->row);
-        const double r = m->bodies.radius[mesh->row], volume = tl_body_volume(m, mesh->row);
-        low = tl_v3_min(low, tl_v3_sub(x, tl_v3(r, r, r)));
-        high = tl_v3_max(high, tl_v3_add(x, tl_v3(r, r, r)));
+        const double volume = tl_body_volume(m, mesh->row);
         for (uint32_t j = mesh->parcel_begin; j < mesh->parcel_end; j++)
             stored += z->parcels.stored[j];
         stiff += volume * z->solid[z->parcels.of[mesh->parcel_begin].solid].of.constrained;
     }
-    return stored > 0 && stiff > 0 ? sqrt(2 * stored / stiff) * tl_v3_norm(tl_v3_sub(high, low)) : 0;
+    return stored > 0 && stiff > 0 ? sqrt(2 * stored / stiff) * reach(m, NULL) : 0;
 }
 
 double tl_watch_on_end(const tl_watch *w)

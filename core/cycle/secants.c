@@ -189,12 +189,14 @@ static tl_vec3 place_of(const tl_model *m, uint32_t contact)
     return area > 0 ? tl_v3_scale(1 / area, sum) : sum;
 }
 
-/* Force and moment on B about its place. */
+/* Force and moment on B about its place, which goes along half with A and half with B: so A and B may change places. */
 static void force_of(const tl_model *m, uint32_t contact, const tl_secant *s, double force[6])
 {
     const tl_contacts *c = &m->detect->contacts;
+    const tl_vec3 apart = tl_sides_apart(m, tl_contact_sides(m, contact));
+    const tl_vec3 arm = tl_v3_scale(0.5, tl_v3_add(vec_of(s->arm_a), tl_v3_add(vec_of(s->arm_b), apart)));
     put_vec(force, c->force[contact]);
-    put_vec(force + 3, tl_v3_sub(c->moment[contact], tl_v3_cross(vec_of(s->arm_a), c->force[contact])));
+    put_vec(force + 3, tl_v3_sub(c->moment[contact], tl_v3_cross(arm, c->force[contact])));
 }
 
 static void secant_begin(const tl_model *m, uint32_t contact, tl_secant *s)
@@ -237,7 +239,7 @@ static void times_root(const tl_secant *of, const double s[6], double turned[6],
  * it presses. Else nothing but the hold would bound the leaps of bodies whose contacts close. */
 static bool is_open(const tl_secant *of)
 {
-    return !(of->root[0][0] > 0);
+    return !(dot(of->root[0], of->root[0]) > 0);
 }
 
 /* A step with the motion s has changed the force by -y. */

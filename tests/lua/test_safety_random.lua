@@ -2,12 +2,38 @@
 -- threads. tests/verify/long/random_factors.lua tries many more.
 local check = require "check"
 local models = require "safety_models"
+local shapes = require "shapes"
 
 for seed = 1, check.cases(20) do
     check.holds(models.compare_wedge(seed))
 end
 for seed = 1, check.cases(4) do
     check.holds(models.compare_slope(seed))
+end
+
+-- A slope comes to rest by the same steps in another attitude, in which other blocks come first in the pairs; and so do its trials.
+for _, seed in ipairs { 2, 63 } do
+    local one, steps, cycles, largest, other = models.draw_slope(seed), {}, {}, 0, 0
+    for _, form in ipairs { {}, models.forms(seed)[3] } do
+        local model, of = models.slope(one, form), {}
+        model:joint("*", { friction = 89, cohesion = 1e6 })
+        model:relax { ratio = 1e-6, every = 1, stop = function()
+            local way = 0
+            for _, block in ipairs(model:blocks { fixed = false }) do
+                way = way + shapes.length(block.displacement)
+            end
+            of[#of + 1] = way
+        end }
+        steps[#steps + 1] = of
+        cycles[#cycles + 1] = models.slope(one, form):factor_of_safety { from = 1, to = 3, resolution = 0.1, least_volume = 0.1 }.cycles
+    end
+    check.equal(#steps[2], #steps[1])
+    for step, way in ipairs(steps[1]) do
+        largest = math.max(largest, way)
+        other = math.max(other, math.abs(steps[2][step] - way))
+    end
+    check.holds(other < 1e-9 * largest, string.format("slope %d: the ways of all steps differ by %.2g of them", seed, other / largest))
+    check.equal(cycles[2], cycles[1])
 end
 
 -- Strengths that are lowered by much at once make fail what rests when they are lowered step by step: a coarse search ends with steps as
