@@ -5,7 +5,9 @@
  * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
  * keeps the number, states and flags of the one that had its key; its nodes take those of the nearest old node on the
  * same block. An element with a new key takes those of the nearest old one of its call, between three nodes linearly.
- * States that are RESET are those that `place` gives. Where nothing has moved all are the same to the bit. */
+ * States that are RESET are those that `place` gives. One of the whole that is SPLIT goes with the weights of the
+ * nodes. It comes from the old element with the key, or else from that whose middle is nearest. Where nothing has moved
+ * all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
@@ -177,27 +179,27 @@ static uint32_t nearest_node(const tl_node_table *n, uint32_t row, uint32_t begi
     return best;
 }
 
-/* Whether column `column` of the states of a kind, of nodes or of the whole, passes to elements that are placed
- * again. */
-static bool passes(const tl_kind *kind, uint32_t column, bool whole)
+/* How column `column` of the states of a kind, of nodes or of the whole, passes to elements that are placed again. */
+static uint32_t transfer_of(const tl_kind *kind, uint32_t column, bool whole)
 {
     for (uint32_t k = 0; k < kind->state_count; k++)
         if ((kind->states[k].kind == TL_STATE_WHOLE) == whole && column-- == 0)
-            return kind->states[k].transfer != TL_TRANSFER_RESET;
-    return false; /* the kind has fewer */
+            return kind->states[k].transfer;
+    return TL_TRANSFER_RESET; /* the kind has fewer */
 }
 
-/* Which columns pass. */
+/* Which columns pass; of the whole also which are shared. */
 typedef struct passing {
-    bool node[TL_ELEMENT_COLUMNS], whole[TL_ELEMENT_COLUMNS];
+    bool node[TL_ELEMENT_COLUMNS], whole[TL_ELEMENT_COLUMNS], split[TL_ELEMENT_COLUMNS];
 } passing;
 
 static passing passing_of(const tl_kind *kind)
 {
     passing p;
     for (uint32_t k = 0; k < TL_ELEMENT_COLUMNS; k++) {
-        p.node[k] = passes(kind, k, false);
-        p.whole[k] = passes(kind, k, true);
+        p.node[k] = transfer_of(kind, k, false) == TL_TRANSFER_COPY;
+        p.whole[k] = transfer_of(kind, k, true) == TL_TRANSFER_COPY;
+        p.split[k] = transfer_of(kind, k, true) == TL_TRANSFER_SPLIT;
     }
     return p;
 }
@@ -228,69 +230,77 @@ static void inherit(tl_model *m, uint32_t row, uint32_t from)
     }
 }
 
-/* An old node, by the set of its element and a coordinate. */
-typedef struct old_node {
+/* An old node or the middle of an old element, by the set of that and a coordinate. */
+typedef struct old_place {
     uint32_t set, node, row;
-    double x;
-} old_node;
+    tl_vec3 at;
+} old_place;
 
-static int compare_nodes(const void *a, const void *b)
+static int compare_places(const void *a, const void *b)
 {
-    const old_node *p = a, *q = b;
+    const old_place *p = a, *q = b;
     if (p->set != q->set)
         return p->set < q->set ? -1 : 1;
-    if (p->x != q->x)
-        return p->x < q->x ? -1 : 1;
+    if (p->at.x != q->at.x)
+        return p->at.x < q->at.x ? -1 : 1;
     return (p->node > q->node) - (p->node < q->node);
 }
 
-/* Old nodes, of elements before some row, in the order of compare_nodes. */
-typedef struct old_nodes {
-    old_node *at;
+/* Places of elements before some row, in the order of compare_places. */
+typedef struct old_places {
+    old_place *at;
     size_t count;
-} old_nodes;
+} old_places;
 
-static bool list_old_nodes(const struct tl_elements *e, uint32_t first, old_nodes *list)
+static tl_vec3 middle_of(const struct tl_elements *e, uint32_t row)
+{
+    const uint32_t begin = e->table.node_begin[row], count = e->table.node_count[row];
+    tl_vec3 sum = {0, 0, 0};
+    for (uint32_t k = begin; k < begin + count; k++)
+        sum = tl_v3_add(sum, tl_node_place(&e->nodes, k));
+    return tl_v3_scale(1.0 / count, sum);
+}
+
+/* Lists all nodes, or middles. */
+static bool list_places(const struct tl_elements *e, uint32_t first, bool middles, old_places *list)
 {
     const tl_element_table *t = &e->table;
     const size_t nodes = first ? t->node_begin[first - 1] + t->node_count[first - 1] : 0;
-    list->at = malloc((nodes + 1) * sizeof *list->at);
-    for (uint32_t row = 0; row < first && list->at; row++)
-        for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++)
-            list->at[list->count++] = (old_node){t->set[row], k, row, tl_node_place(&e->nodes, k).x};
+    list->at = malloc(((middles ? first : nodes) + 1) * sizeof *list->at);
+    for (uint32_t row = 0; row < first && list->at; row++) {
+        if (middles)
+            list->at[list->count++] = (old_place){t->set[row], row, row, middle_of(e, row)};
+        for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row] && !middles; k++)
+            list->at[list->count++] = (old_place){t->set[row], k, row, tl_node_place(&e->nodes, k)};
+    }
     if (list->count > 1)
-        qsort(list->at, list->count, sizeof *list->at, compare_nodes);
+        qsort(list->at, list->count, sizeof *list->at, compare_places);
     return list->at != NULL;
 }
 
-/* The one of a set that is nearest to node k, the first of several, and the row of its element; TL_NO_ROW: the set has
- * none. Those whose x is farther off than the nearest so far are not looked at. */
-static uint32_t nearest_of_set(const struct tl_elements *e, const old_nodes *list, uint32_t set, uint32_t k,
-                               uint32_t *row)
+/* The one of a set that is nearest to a place, the first of several; NULL: the set has none. Those whose x is farther
+ * off than the nearest so far are not looked at. */
+static const old_place *nearest_of_set(const old_places *list, uint32_t set, tl_vec3 place)
 {
-    const tl_vec3 place = tl_node_place(&e->nodes, k);
-    const old_node sought = {set, 0, 0, place.x};
+    const old_place sought = {set, 0, 0, place}, *best = NULL;
     size_t low = 0, high = list->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (compare_nodes(&list->at[middle], &sought) < 0)
+        if (compare_places(&list->at[middle], &sought) < 0)
             low = middle + 1;
         else
             high = middle;
     }
-    uint32_t best = TL_NO_ROW;
-    *row = TL_NO_ROW;
     double least = INFINITY;
     for (int way = -1; way <= 1; way += 2)
         for (size_t i = way > 0 ? low : low - 1; i < list->count && list->at[i].set == set; i += (size_t)way) {
-            const old_node *of = &list->at[i];
-            if ((of->x - place.x) * (of->x - place.x) > least)
+            const old_place *of = &list->at[i];
+            if ((of->at.x - place.x) * (of->at.x - place.x) > least)
                 break;
-            const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(&e->nodes, of->node), place));
-            if (far < least || (far == least && of->node < best)) {
+            const double far = tl_v3_norm2(tl_v3_sub(of->at, place));
+            if (far < least || (far == least && of->node < best->node)) {
                 least = far;
-                best = of->node;
-                *row = of->row;
+                best = of;
             }
         }
     return best;
@@ -343,26 +353,45 @@ static bool find_between(const tl_model *m, uint32_t row, uint32_t one, uint32_t
 /* The nodes of an element that has no older one get states from the old element of its set that has the nearest node.
  * It may be on any blocks: parts of blocks that were cut have other names. In the plane of three nodes states go on
  * linearly. So the parts of a wall are pressed as the whole was. */
-static void inherit_near(tl_model *m, const old_nodes *list, uint32_t row)
+static void inherit_near(tl_model *m, const old_places *list, uint32_t row)
 {
     struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
     const passing pass = passing_of(e->set[t->set[row]].kind);
     for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
-        uint32_t of;
-        const uint32_t best = nearest_of_set(e, list, t->set[row], k, &of);
-        between three;
-        const bool linear = best != TL_NO_ROW && find_between(m, of, best, k, &three);
-        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++) {
+        const old_place *best = nearest_of_set(list, t->set[row], tl_node_place(n, k));
+        between three = {{0}, {0}};
+        const bool linear = best && find_between(m, best->row, best->node, k, &three);
+        for (uint32_t c = 0; best && c < n->state_columns; c++) {
             double *state = n->state[c];
             if (!pass.node[c])
                 continue;
             state[k] = linear ? three.part[0] * state[three.node[0]] + three.part[1] * state[three.node[1]] +
                                     three.part[2] * state[three.node[2]]
-                              : state[best];
+                              : state[best->node];
         }
     }
+}
+
+/* What the nodes of an element stand for together. */
+static double weight_of(const struct tl_elements *e, uint32_t row)
+{
+    double sum = 0;
+    for (uint32_t k = e->table.node_begin[row]; k < e->table.node_begin[row] + e->table.node_count[row]; k++)
+        sum += e->nodes.weight[k];
+    return sum;
+}
+
+/* Gives an element its part of the states of an old one that are SPLIT. */
+static void take_part(struct tl_elements *e, uint32_t row, uint32_t old)
+{
+    tl_element_table *t = &e->table;
+    const passing pass = passing_of(e->set[t->set[row]].kind);
+    const double had = weight_of(e, old), part = had > 0 ? weight_of(e, row) / had : 0;
+    for (uint32_t k = 0; k < t->state_columns; k++)
+        if (pass.split[k])
+            t->state[k][row] = part * t->state[k][old];
 }
 
 /* Lets new elements, rows from `first` on, inherit from those before. false: out of memory. */
@@ -371,26 +400,27 @@ static bool inherit_all(tl_model *m, uint32_t first)
     struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     old_one *list = malloc((first + (size_t)1) * sizeof *list);
-    old_nodes near = {NULL, 0};
-    if (!list || !list_old_nodes(e, first, &near)) {
-        free(list);
-        return false;
-    }
-    for (uint32_t row = 0; row < first; row++)
+    old_places nodes = {NULL, 0}, middles = {NULL, 0};
+    const bool enough = list && list_places(e, first, false, &nodes) && list_places(e, first, true, &middles);
+    for (uint32_t row = 0; enough && row < first; row++)
         list[row] = (old_one){t->set[row], row, t->key[row]};
-    if (first > 1)
+    if (enough && first > 1)
         qsort(list, first, sizeof *list, compare_old);
-    for (uint32_t row = first; row < t->table.rows; row++) {
+    for (uint32_t row = first; enough && row < t->table.rows; row++) {
         const old_one sought = {t->set[row], row, t->key[row]};
         const old_one *found = first && t->key[row] ? bsearch(&sought, list, first, sizeof *list, compare_old) : NULL;
+        const old_place *near = found ? NULL : nearest_of_set(&middles, t->set[row], middle_of(e, row));
         if (found)
             inherit(m, row, found->row);
         else
-            inherit_near(m, &near, row);
+            inherit_near(m, &nodes, row);
+        if (found || near)
+            take_part(e, row, found ? found->row : near->row);
     }
-    free(near.at);
-    free(list);
-    return true;
+    void *const owned[] = {list, nodes.at, middles.at};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    return enough;
 }
 
 /* ---------------------------------------------------------------- order ------------------ */

@@ -202,6 +202,8 @@ static tl_status put_apertures(tl_model *model, const tl_lua_selection *made, co
         status = tl_element_get(model, ids[i], &info);
         for (size_t k = 0; status == TL_OK && k < info.nodes; k++)
             status = tl_element_put(model, ids[i], k, "touching", aperture[i]);
+        if (status == TL_OK) /* it is counted for the new aperture */
+            status = tl_element_put(model, ids[i], SIZE_MAX, "void", 0);
     }
     return status == TL_OK ? tl_elements_renew(model) : status;
 }

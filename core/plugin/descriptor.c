@@ -277,7 +277,9 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
                        : kind->type == TL_KIND_SOLID   ? ", an axis or a tensor"
                        : kind->type == TL_KIND_ELEMENT ? ", of a node or of the whole"
                                                        : "");
-    const bool anew = kind->type == TL_KIND_ELEMENT && s->transfer == TL_TRANSFER_RESET;
+    const bool anew =
+        kind->type == TL_KIND_ELEMENT &&
+        (s->transfer == TL_TRANSFER_RESET || (s->transfer == TL_TRANSFER_SPLIT && s->kind == TL_STATE_WHOLE));
     if ((kind->type == TL_KIND_SOLID || kind->type == TL_KIND_ELEMENT) && s->transfer != TL_TRANSFER_COPY && !anew)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' of %s must have TL_TRANSFER_COPY: %s stay what they are",
                        s->name, kind->type == TL_KIND_SOLID ? "a solid" : "an element",

@@ -169,7 +169,9 @@ typedef struct tl_state {
     uint32_t size;
     uint32_t kind;     /* tl_state_kind; a damping has scalars only */
     uint32_t transfer; /* tl_state_transfer; TL_TRANSFER_COPY for dampings, solids and elements. Since 1.15 an element
-                        * may have TL_TRANSFER_RESET: where `place` is called again the state is what that gives. */
+                        * may have TL_TRANSFER_RESET: where `place` is called again the state is what that gives.
+                        * Since 1.16 one of the whole may have TL_TRANSFER_SPLIT: it goes with the weight of nodes, from
+                        * the element with the same key or else the nearest. */
     const char *name;
     const char *unit;
     const char *doc;

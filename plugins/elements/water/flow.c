@@ -3,9 +3,7 @@
  * An element is a wet joint, a cell of the network, with nodes at the corners of its polygon on both walls: the weight
  * of a corner is a third of the triangles of its fan. A corner is also put where another joint meets the side. A head
  * and a drain are elements, too, with two nodes on the ground: they bear no force and keep their flow. solve.c finds
- * the pressures; between two solutions they stay.
- *
- * When all that is drained drips only: pressures below 0 are 0. */
+ * the pressures; between two solutions they stay. */
 #include "flow.h"
 
 #include "crossings.h"
@@ -68,7 +66,11 @@ const tl_state flow_state_table[FLOW_STATES] = {
     TL_STATE(TL_STATE_WHOLE, "role", "", "0: a wet joint, 1: a head, 2: a drain", .transfer = TL_TRANSFER_RESET),
     TL_STATE(TL_STATE_WHOLE, "closed", "",
              "1: its network reaches neither a head nor a drain; of a head or drain: it reaches no joint"),
-    TL_STATE(TL_STATE_WHOLE, "time", "s", "of its pressures; -1: it has none yet")};
+    TL_STATE(TL_STATE_WHOLE, "time", "s", "of its pressures; -1: it has none yet"),
+    TL_STATE(TL_STATE_WHOLE, "water", "m3", "that is stored in the joint, at pressure 0; 0 in steady flow",
+             .transfer = TL_TRANSFER_SPLIT),
+    TL_STATE(TL_STATE_WHOLE, "void", "m3", "area by aperture as of `water`; 0: water has not been counted",
+             .transfer = TL_TRANSFER_SPLIT)};
 
 /* ---------------------------------------------------------------- geometry --------------- */
 
@@ -332,7 +334,7 @@ static tl_status place_joint(const placing *k, const tl_element_wall *w, size_t 
         state[c][FLOW_TOUCHING] = own ? own->aperture : k->p->aperture;
         state[c][FLOW_CROSSING] = side ? 0 : crossing[at];
     }
-    const double whole[] = {m.area, w->opening, w->opening > k->p->drain_gap, 0, 0, 0, FLOW_JOINT, 0, -1};
+    const double whole[] = {m.area, w->opening, w->opening > k->p->drain_gap, 0, 0, 0, FLOW_JOINT, 0, -1, 0, 0};
     return k->host->add(k->host, &(tl_new_element){.size = sizeof(tl_new_element),
                                                    .nodes = nodes,
                                                    .count = 2 * all.count,
@@ -349,7 +351,7 @@ static tl_status place_ends(const placing *k, const tl_points *of, int role)
         const double number = of->at[i + 2].x;
         const tl_element_node nodes[2] = {{0, of->at[i], {0, 0, 0}, role == FLOW_AT_DRAIN ? number : 0},
                                           {0, of->at[i + 1], {0, 0, 0}, role == FLOW_AT_DRAIN ? number : 0}};
-        const double whole[] = {0, 0, 0, 0, 0, role == FLOW_AT_HEAD ? number : 0, role, 0, -1};
+        const double whole[] = {0, 0, 0, 0, 0, role == FLOW_AT_HEAD ? number : 0, role, 0, -1, 0, 0};
         status = k->host->add(
             k->host, &(tl_new_element){.size = sizeof(tl_new_element), .nodes = nodes, .count = 2, .state = whole});
     }

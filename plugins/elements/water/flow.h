@@ -12,7 +12,7 @@ typedef struct flow_params {
     int32_t steady;
 } flow_params;
 
-enum { FLOW_PARAMS = 14, FLOW_STATES = 13 };
+enum { FLOW_PARAMS = 14, FLOW_STATES = 15 };
 extern const tl_param flow_param_table[FLOW_PARAMS];
 extern const tl_state flow_state_table[FLOW_STATES];
 extern const tl_element_ops flow_ops;
@@ -20,7 +20,19 @@ extern const tl_element_ops flow_ops;
 /* States of a node. A corner of the first wall is where a side of the polygon begins: it bears the side's crossing. */
 enum { FLOW_PRESSURE, FLOW_SOURCE, FLOW_TOUCHING, FLOW_CROSSING };
 /* States of the whole. */
-enum { FLOW_AREA, FLOW_OPENING, FLOW_DRY, FLOW_APERTURE, FLOW_FLOW, FLOW_HEAD, FLOW_ROLE, FLOW_CLOSED, FLOW_TIME };
+enum {
+    FLOW_AREA,
+    FLOW_OPENING,
+    FLOW_DRY,
+    FLOW_APERTURE,
+    FLOW_FLOW,
+    FLOW_HEAD,
+    FLOW_ROLE,
+    FLOW_CLOSED,
+    FLOW_TIME,
+    FLOW_WATER,
+    FLOW_VOID
+};
 /* What an element is. A head has two nodes, the corners of its box; a drain the ends of its line, with its radius as
  * their weight. */
 enum { FLOW_JOINT, FLOW_AT_HEAD, FLOW_AT_DRAIN };

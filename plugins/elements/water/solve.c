@@ -15,72 +15,23 @@
  *
  *     q = 2 pi w^3 / (12 viscosity) / ln(r0 / r) (phi_cell - unit_weight z),    r0 = 0.2 sqrt(A)
  *
- * Steady flow: the sum over each cell is 0. Otherwise water of the bulk modulus K is stored,
- *
- *     w A / K d(phi)/dt + A dw/dt + sum of q = 0
- *
- * for the time since the last call, with the apertures of now and dw/dt the same all the while. That time has parts of
- * h. Of each an implicit step gives phi(h), and two of h/2 give phi(h/2, h/2). Both are stable for any h, and
- *
- *     2 phi(h/2, h/2) - phi(h)
- *
- * is of second order (Richardson 1911). Where the two differ too much the part is halved. After each part a pressure
- * below 0 becomes 0. Flows are those of the mean potential, phi(h/2) + phi(h/2, h/2) - phi(h) of each part by its
- * length: so what flows in is what is stored.
+ * Steady flow: the sum over each cell is 0, and a joint above the water conducts as if it were full. It bears no
+ * pressure. stored.c follows water that is stored.
  *
  * The equations are solved by conjugate gradients with the diagonal as preconditioner, one after the other, so the
- * bits do not depend on threads. Unsaturated joints are not followed: one above the water conducts as if it were full,
- * and bears no pressure. */
-#include "flow.h"
+ * bits do not depend on threads.
+ */
+#include "solve.h"
 
-/* Tolerance: residual of the equations over that of the heads, where iterations end. What is left over is water that is
- * lost, and apertures that differ a hundredfold make it a millionfold larger. Test: lua/test_flow. */
-#define CONVERGED 1e-13
+/* Tolerance: the same over what it would be if the potentials were each alone: rounding of sums. It is for networks
+ * without water, which have any potential. Test: property/flow_properties. */
+#define ROUNDING 1e-15
 /* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
 #define MOST_ITERATIONS 20
-
-/* Tolerance: largest difference of the potentials by one implicit step and by two of half of it, over the largest
- * difference of potentials that there is. Test: lua/test_stored_flow. */
-#define STEP_ERROR 1e-4
-/* Limit: the time since the last call over its shortest part. */
-#define MOST_PARTS 1048576.0
 
 /* Tolerance: least ratio of the radii of a drain. `place` refuses smaller ones, but joints that are cut become smaller.
  * Test: lua/test_flow. */
 #define LEAST_RATIO 1.05
-
-/* A drain in a cell. */
-typedef struct hit {
-    uint32_t cell, drain;
-    double conductance, phi; /* m3/s/Pa, Pa */
-} hit;
-
-typedef struct net {
-    const flow_params *p;
-    const tl_element_batch *b;
-    size_t cells, sides, crossings;
-    uint32_t *first;          /* of the sides of a cell, [cells + 1] */
-    uint32_t *crossing;       /* of a side */
-    double *t;                /* of a side, m3/s/Pa */
-    uint32_t *head;           /* of a crossing: row of the element + 1; 0: none */
-    double *given;            /* of a crossing: its potential where it has a head, Pa */
-    double *sum, *phi;        /* of a crossing: of t; its potential in the last product */
-    double *x, *r, *way, *y;  /* of a cell: potential, Pa; residual, direction and product */
-    double *extra, *diagonal; /* of a cell: of drains and storage; of the matrix */
-    double *leak, *linked;    /* of a cell: of drains; of the matrix without storage */
-    double *source, *store;   /* of a cell: right side without storage, m3/s; w A / K, m3/Pa */
-    double *mean;             /* of a cell: potential by which it has flowed since the last call, Pa */
-    double *from, *one, *two; /* of a cell: before a part, after one step, and after half of two, Pa */
-    double *width;            /* of a cell, m: aperture */
-    unsigned char *closed, *open, *drained;
-    hit *drain;
-    size_t hits, hit_capacity;
-    uint32_t *head_row, *drain_row; /* of the elements that are heads and drains: they may be anywhere */
-    size_t head_count, drain_count;
-    double base; /* Pa: potentials count from it */
-    double step; /* s; 0: none */
-    bool flows;  /* flows are found: time has passed, or some have none yet */
-} net;
 
 /* ---------------------------------------------------------------- geometry --------------- */
 
@@ -94,7 +45,7 @@ static tl_vec3 normal_at(const tl_element_batch *b, uint32_t i)
     return tl_v3(b->normal[0][i], b->normal[1][i], b->normal[2][i]);
 }
 
-static size_t role_of(const net *n, size_t e)
+static size_t role_of(const flow_net *n, size_t e)
 {
     return (size_t)n->b->element_state[FLOW_ROLE][e];
 }
@@ -107,13 +58,13 @@ typedef struct cell {
     double xx, xy, yy; /* second moments per area */
 } cell;
 
-static tl_vec3 corner_of(const net *n, const cell *c, uint32_t i)
+static tl_vec3 corner_of(const flow_net *n, const cell *c, uint32_t i)
 {
     const uint32_t a = c->node + i;
     return tl_v3_scale(0.5, tl_v3_add(node_at(n->b, a), node_at(n->b, a + c->corners)));
 }
 
-static cell cell_of(const net *n, size_t e)
+static cell cell_of(const flow_net *n, size_t e)
 {
     const uint32_t begin = n->b->start[e];
     cell c = {.node = begin, .corners = (n->b->start[e + 1] - begin) / 2};
@@ -142,13 +93,13 @@ static cell cell_of(const net *n, size_t e)
     return c;
 }
 
-static double height_of(const net *n, const cell *c)
+static double height_of(const flow_net *n, const cell *c)
 {
     return n->b->origin.z + c->centroid.z;
 }
 
 /* Side i: its vector L n, outward, and its middle from the centroid. */
-static void side_of(const net *n, const cell *c, uint32_t i, tl_vec3 *out, tl_vec3 *middle)
+static void side_of(const flow_net *n, const cell *c, uint32_t i, tl_vec3 *out, tl_vec3 *middle)
 {
     const tl_vec3 a = corner_of(n, c, i), b = corner_of(n, c, i + 1 < c->corners ? i + 1 : 0);
     *out = tl_v3_cross(tl_v3_sub(b, a), c->normal);
@@ -156,7 +107,7 @@ static void side_of(const net *n, const cell *c, uint32_t i, tl_vec3 *out, tl_ve
 }
 
 /* Mean aperture, m, and mean opening. */
-static double aperture_of(const net *n, const cell *c, double *opening)
+static double aperture_of(const flow_net *n, const cell *c, double *opening)
 {
     const tl_element_batch *b = n->b;
     double sum = 0, area = 0, open = 0;
@@ -176,20 +127,20 @@ static double aperture_of(const net *n, const cell *c, double *opening)
 
 /* ---------------------------------------------------------------- the network ------------ */
 
-static bool is_joint(const net *n, size_t e)
+bool flow_is_wet(const flow_net *n, size_t e)
 {
     const tl_element_batch *b = n->b;
     return role_of(n, e) == FLOW_JOINT && !(b->flags[e] & TL_ELEMENT_DETACHED);
 }
 
 /* Makes room. false: out of memory. */
-static bool make_room(net *n)
+static bool make_room(flow_net *n)
 {
     double top = -1;
     n->first = malloc((n->cells + 1) * sizeof *n->first);
     for (size_t e = 0; n->first && e < n->cells; e++) {
         n->first[e] = (uint32_t)n->sides;
-        const uint32_t half = is_joint(n, e) ? (n->b->start[e + 1] - n->b->start[e]) / 2 : 0;
+        const uint32_t half = flow_is_wet(n, e) ? (n->b->start[e + 1] - n->b->start[e]) / 2 : 0;
         for (uint32_t i = 0; i < half; i++)
             top = fmax(top, n->b->state[FLOW_CROSSING][n->b->start[e] + i]);
         n->sides += half;
@@ -198,9 +149,8 @@ static bool make_room(net *n)
         return false;
     n->first[n->cells] = (uint32_t)n->sides;
     n->crossings = (size_t)(top + 1);
-    double **const of_cells[] = {&n->x,        &n->r,    &n->way,    &n->y,      &n->extra,
-                                 &n->diagonal, &n->leak, &n->linked, &n->source, &n->store,
-                                 &n->mean,     &n->from, &n->one,    &n->two,    &n->width};
+    double **const of_cells[] = {&n->x,    &n->r,      &n->way,    &n->y,    &n->extra, &n->diagonal,
+                                 &n->leak, &n->linked, &n->source, &n->mean, &n->width, &n->level};
     n->head_row = malloc((n->cells + 1) * sizeof *n->head_row);
     n->drain_row = malloc((n->cells + 1) * sizeof *n->drain_row);
     bool enough = n->head_row && n->drain_row;
@@ -223,18 +173,18 @@ static bool make_room(net *n)
     return enough && n->crossing && n->t && n->head && n->open && n->closed && n->drained;
 }
 
-static void release(net *n)
+static void release(flow_net *n)
 {
-    void *const owned[] = {n->first,  n->crossing, n->t,       n->head,  n->given, n->sum,      n->phi,
-                           n->x,      n->r,        n->way,     n->y,     n->extra, n->diagonal, n->width,
-                           n->closed, n->open,     n->drained, n->drain, n->leak,  n->linked,   n->source,
-                           n->store,  n->mean,     n->from,    n->one,   n->two,   n->head_row, n->drain_row};
+    void *const owned[] = {n->first,  n->crossing, n->t,        n->head,     n->given, n->sum,      n->phi,
+                           n->x,      n->r,        n->way,      n->y,        n->extra, n->diagonal, n->width,
+                           n->level,  n->closed,   n->open,     n->drained,  n->drain, n->leak,     n->linked,
+                           n->source, n->mean,     n->head_row, n->drain_row};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
 }
 
 /* Adds the drains that pass a cell. false: out of memory. */
-static bool add_drains(net *n, size_t e, const cell *c)
+static bool add_drains(flow_net *n, size_t e, const cell *c)
 {
     const tl_element_batch *b = n->b;
     tl_vec3 corner[TL_ELEMENT_NODES];
@@ -247,7 +197,7 @@ static bool add_drains(net *n, size_t e, const cell *c)
             continue;
         if (n->hits == n->hit_capacity) {
             const size_t more = n->hits ? 2 * n->hits : 64;
-            hit *list = realloc(n->drain, more * sizeof *list);
+            flow_hit *list = realloc(n->drain, more * sizeof *list);
             if (!list)
                 return false;
             n->drain = list;
@@ -256,14 +206,14 @@ static bool add_drains(net *n, size_t e, const cell *c)
         const double ratio = FLOW_WELL_RADIUS * sqrt(c->area) / b->weight[b->start[k]], w = n->width[e];
         const double conductance =
             2 * TL_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
-        n->drain[n->hits++] = (hit){(uint32_t)e, k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
+        n->drain[n->hits++] = (flow_hit){(uint32_t)e, k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
         n->drained[e] = 1;
     }
     return true;
 }
 
 /* Gives a crossing the head of the first box that the middle of a side lies in. */
-static void take_head(net *n, tl_vec3 middle, uint32_t crossing)
+static void take_head(flow_net *n, tl_vec3 middle, uint32_t crossing)
 {
     const tl_element_batch *b = n->b;
     for (size_t i = 0; i < n->head_count; i++) {
@@ -278,7 +228,7 @@ static void take_head(net *n, tl_vec3 middle, uint32_t crossing)
 }
 
 /* Fills in the cell of element e. false: out of memory. */
-static bool add_cell(net *n, size_t e)
+static bool add_cell(flow_net *n, size_t e)
 {
     const tl_element_batch *b = n->b;
     const cell c = cell_of(n, e);
@@ -307,26 +257,27 @@ static bool add_cell(net *n, size_t e)
     }
     const bool made = b->element_state[FLOW_APERTURE][e] > 0;
     const double head = b->element_state[FLOW_HEAD][e];
-    n->x[e] = (made ? n->p->unit_weight * head : n->p->unit_weight * height_of(n, &c) + own / area) - n->base;
+    n->level[e] = n->p->unit_weight * height_of(n, &c) - n->base;
+    n->x[e] = made ? n->p->unit_weight * head - n->base : n->level[e] + own / area;
     n->closed[e] = dry;
     b->element_state[FLOW_AREA][e] = c.area;
     return dry || add_drains(n, e, &c);
 }
 
 /* The least and largest head lie about it. */
-static double base_of(const net *n)
+static double base_of(const flow_net *n)
 {
     return n->head_count > 0 ? n->p->unit_weight * n->b->element_state[FLOW_HEAD][n->head_row[0]] : 0;
 }
 
-static bool build(net *n)
+static bool build(flow_net *n)
 {
     if (!make_room(n))
         return false;
     n->base = base_of(n);
     bool enough = true;
     for (size_t e = 0; e < n->cells && enough; e++)
-        if (is_joint(n, e))
+        if (flow_is_wet(n, e))
             enough = add_cell(n, e);
     return enough;
 }
@@ -334,7 +285,7 @@ static bool build(net *n)
 /* ---------------------------------------------------------------- the equations ---------- */
 
 /* The potentials of crossings for those of cells; where a head is, that or, with `bare`, 0. */
-static void meet(net *n, const double *x, bool bare)
+static void meet(flow_net *n, const double *x, bool bare)
 {
     memset(n->phi, 0, n->crossings * sizeof *n->phi);
     for (size_t e = 0; e < n->cells; e++)
@@ -345,7 +296,7 @@ static void meet(net *n, const double *x, bool bare)
 }
 
 /* y = A x. */
-static void multiply(net *n, const double *x, double *y)
+void flow_multiply(flow_net *n, const double *x, double *y)
 {
     meet(n, x, true);
     for (size_t e = 0; e < n->cells; e++) {
@@ -357,7 +308,7 @@ static void multiply(net *n, const double *x, double *y)
 }
 
 /* Sum of a b / d over all cells, by partial sums that compilers may keep side by side. */
-static double scaled_product(const net *n, const double *a, const double *b)
+static double scaled_product(const flow_net *n, const double *a, const double *b)
 {
     double part[4] = {0, 0, 0, 0};
     for (size_t e = 0; e < n->cells; e++)
@@ -365,7 +316,16 @@ static double scaled_product(const net *n, const double *a, const double *b)
     return (part[0] + part[1]) + (part[2] + part[3]);
 }
 
-static double product(const net *n, const double *a, const double *b)
+/* Sum of d a^2. */
+static double weighted_square(const flow_net *n, const double *a)
+{
+    double sum = 0;
+    for (size_t e = 0; e < n->cells; e++)
+        sum += n->diagonal[e] * a[e] * a[e];
+    return sum;
+}
+
+static double product(const flow_net *n, const double *a, const double *b)
 {
     double part[4] = {0, 0, 0, 0};
     for (size_t e = 0; e < n->cells; e++)
@@ -373,23 +333,16 @@ static double product(const net *n, const double *a, const double *b)
     return (part[0] + part[1]) + (part[2] + part[3]);
 }
 
-/* Fills what the equations have without storage, and what cells store. */
-static void set_up(net *n)
+/* Fills what the equations have without storage. */
+static void set_up(flow_net *n)
 {
     for (size_t k = 0; k < n->hits; k++) {
         n->leak[n->drain[k].cell] += n->drain[k].conductance;
         n->source[n->drain[k].cell] += n->drain[k].conductance * n->drain[k].phi;
     }
     for (size_t e = 0; e < n->cells; e++) {
-        if (!is_joint(n, e) || n->closed[e])
-            continue;
-        const double area = n->b->element_state[FLOW_AREA][e], had = n->b->element_state[FLOW_APERTURE][e];
-        if (n->step > 0) {
-            n->store[e] = n->width[e] * area / n->p->bulk;
-            n->source[e] -= had > 0 ? (n->width[e] - had) * area / n->step : 0;
-        }
         n->linked[e] = n->leak[e];
-        for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++) {
+        for (uint32_t k = n->first[e]; !n->closed[e] && k < n->first[e + 1]; k++) {
             const uint32_t c = n->crossing[k];
             n->linked[e] += n->head[c] ? n->t[k] : n->t[k] * (1 - n->t[k] / n->sum[c]);
             n->source[e] += n->head[c] ? n->t[k] * n->given[c] : 0;
@@ -398,7 +351,7 @@ static void set_up(net *n)
 }
 
 /* Cells that take no part: dry ones, and closed networks in steady flow. Nothing flows there. */
-static void still(net *n)
+static void still(flow_net *n)
 {
     for (size_t e = 0; e < n->cells; e++)
         for (uint32_t k = n->first[e]; n->closed[e] && k < n->first[e + 1]; k++) {
@@ -411,21 +364,22 @@ static void still(net *n)
         n->sum[n->crossing[k]] += n->t[k];
 }
 
-/* Conjugate gradients. false: they do not converge. */
-static bool iterate(net *n)
+bool flow_iterate(flow_net *n)
 {
     const double wanted = scaled_product(n, n->r, n->r);
-    multiply(n, n->x, n->y);
+    flow_multiply(n, n->x, n->y);
     for (size_t e = 0; e < n->cells; e++)
         n->r[e] = n->diagonal[e] > 0 ? n->r[e] - n->y[e] : 0;
     double now = scaled_product(n, n->r, n->r);
-    const double end = CONVERGED * CONVERGED * fmax(wanted, now), most = MOST_ITERATIONS * (double)n->cells + 1000;
+    const double most = MOST_ITERATIONS * (double)n->cells + 1000,
+                 least = ROUNDING * ROUNDING * weighted_square(n, n->x);
+    const double end = fmax(FLOW_CONVERGED * FLOW_CONVERGED * fmax(wanted, now), least);
     for (size_t e = 0; e < n->cells; e++)
         n->way[e] = n->diagonal[e] > 0 ? n->r[e] / n->diagonal[e] : 0;
     for (double i = 0; now > end; i++) {
         if (!(i < most))
             return false;
-        multiply(n, n->way, n->y);
+        flow_multiply(n, n->way, n->y);
         const double part = now / product(n, n->way, n->y);
         for (size_t e = 0; e < n->cells; e++) {
             n->x[e] += part * n->way[e];
@@ -439,104 +393,12 @@ static bool iterate(net *n)
     return isfinite(now);
 }
 
-/* ---------------------------------------------------------------- time ------------------- */
-
-/* An implicit step of h from x, or with h = INFINITY what is steady. false: it does not converge. */
-static bool take_step(net *n, double h)
-{
-    for (size_t e = 0; e < n->cells; e++) {
-        const double store = n->store[e] / h;
-        n->extra[e] = n->leak[e] + store;
-        n->diagonal[e] = n->linked[e] + store;
-        n->r[e] = n->source[e] + store * n->x[e];
-    }
-    return iterate(n);
-}
-
-/* Largest difference of the potentials of cells, heads and drains. */
-static double range_of(const net *n)
-{
-    double least = INFINITY, most = -INFINITY;
-    for (size_t e = 0; e < n->cells; e++) {
-        least = n->store[e] > 0 ? fmin(least, n->x[e]) : least;
-        most = n->store[e] > 0 ? fmax(most, n->x[e]) : most;
-    }
-    for (size_t c = 0; c < n->crossings; c++) {
-        least = n->head[c] ? fmin(least, n->given[c]) : least;
-        most = n->head[c] ? fmax(most, n->given[c]) : most;
-    }
-    for (size_t k = 0; k < n->hits; k++) {
-        least = fmin(least, n->drain[k].phi);
-        most = fmax(most, n->drain[k].phi);
-    }
-    return fmax(0, most - least);
-}
-
-/* Goes on from x by a part of h. `error` becomes the difference of one step and two, and `most` what it may be, Pa. */
-static bool try_part(net *n, double h, double *error, double *most)
-{
-    const size_t bytes = n->cells * sizeof *n->x;
-    memcpy(n->from, n->x, bytes);
-    if (!take_step(n, h))
-        return false;
-    memcpy(n->one, n->x, bytes);
-    memcpy(n->x, n->from, bytes);
-    if (!take_step(n, 0.5 * h))
-        return false;
-    memcpy(n->two, n->x, bytes);
-    if (!take_step(n, 0.5 * h))
-        return false;
-    double change = range_of(n), size = 0;
-    *error = 0;
-    for (size_t e = 0; e < n->cells; e++) {
-        if (!(n->store[e] > 0))
-            continue;
-        *error = fmax(*error, fabs(n->x[e] - n->one[e]));
-        change = fmax(change, fabs(n->x[e] - n->from[e]));
-        size = fmax(size, fabs(n->x[e]));
-    }
-    *most = STEP_ERROR * change + CONVERGED * size;
-    return true;
-}
-
-/* Takes over what a part of h has come to. */
-static void keep_part(net *n, double h)
-{
-    for (size_t e = 0; e < n->cells; e++) {
-        if (!(n->store[e] > 0))
-            continue;
-        const cell c = cell_of(n, e);
-        n->mean[e] += h / n->step * (n->two[e] + n->x[e] - n->one[e]);
-        n->x[e] = fmax(2 * n->x[e] - n->one[e], n->p->unit_weight * height_of(n, &c) - n->base);
-    }
-}
-
-/* Follows the water for the time since the last call. */
-static bool follow(net *n)
-{
-    double left = n->step, h = n->step, error, most;
-    while (left > 0) {
-        h = fmin(h, left);
-        if (!try_part(n, h, &error, &most))
-            return false;
-        if (error > most && h > n->step / MOST_PARTS) {
-            memcpy(n->x, n->from, n->cells * sizeof *n->x);
-            h *= 0.5;
-            continue;
-        }
-        keep_part(n, h);
-        left = h < left ? left - h : 0;
-        h *= error < 0.25 * most ? 2 : 1;
-    }
-    return true;
-}
-
 /* ---------------------------------------------------------------- what comes of it ------- */
 
 /* Gives the nodes of a cell its pressures: linear, with the gradient that the sides have on the mean. What each corner
  * is to bear has the force and the moments of that, since its weight stands for a third of triangles: second moments
  * of the corners are larger than those of the polygon. */
-static void give_pressures(net *n, size_t e)
+static void give_pressures(flow_net *n, size_t e)
 {
     const tl_element_batch *b = n->b;
     const cell c = cell_of(n, e);
@@ -568,8 +430,22 @@ static void give_pressures(net *n, size_t e)
     }
 }
 
+void flow_out(flow_net *n, const double *x, double *out)
+{
+    meet(n, x, false);
+    for (size_t e = 0; e < n->cells; e++) {
+        out[e] = 0;
+        for (uint32_t k = n->first[e]; k < n->first[e + 1]; k++)
+            out[e] += n->t[k] * (x[e] - n->phi[n->crossing[k]]);
+    }
+    for (size_t k = 0; k < n->hits; k++) {
+        const flow_hit *h = &n->drain[k];
+        out[h->cell] += n->closed[h->cell] ? 0 : h->conductance * (x[h->cell] - h->phi);
+    }
+}
+
 /* Flows of cells, heads and drains. */
-static void give_flows(net *n)
+static void give_flows(flow_net *n)
 {
     double *const flow = n->b->element_state[FLOW_FLOW];
     for (size_t e = 0; e < n->cells; e++)
@@ -583,7 +459,7 @@ static void give_flows(net *n)
                 flow[n->head[c] - 1] -= q;
         }
     for (size_t k = 0; k < n->hits; k++) {
-        const hit *h = &n->drain[k];
+        const flow_hit *h = &n->drain[k];
         const double q = n->closed[h->cell] ? 0 : h->conductance * (n->mean[h->cell] - h->phi);
         flow[h->cell] += 0.5 * fabs(q);
         flow[h->drain] -= q;
@@ -591,7 +467,7 @@ static void give_flows(net *n)
 }
 
 /* Marks heads and drains that reach no joint. */
-static void mark_ends(net *n)
+static void mark_ends(flow_net *n)
 {
     double *const closed = n->b->element_state[FLOW_CLOSED];
     for (size_t i = 0; i < n->head_count; i++)
@@ -605,7 +481,7 @@ static void mark_ends(net *n)
         closed[n->drain[k].drain] = 0;
 }
 
-static void give_all(net *n)
+static void give_all(flow_net *n)
 {
     const tl_element_batch *b = n->b;
     if (n->flows) {
@@ -616,7 +492,7 @@ static void give_all(net *n)
     mark_ends(n);
     for (size_t e = 0; e < n->cells; e++) {
         b->element_state[FLOW_TIME][e] = b->time;
-        if (!is_joint(n, e))
+        if (!flow_is_wet(n, e))
             continue;
         b->element_state[FLOW_APERTURE][e] = n->width[e];
         b->element_state[FLOW_HEAD][e] = (n->x[e] + n->base) / n->p->unit_weight;
@@ -635,7 +511,7 @@ static TL_PRINTF(3, 4) tl_status refuse(tl_report *report, tl_status status, con
 }
 
 /* Time since pressures were found last, s; 0: never. */
-static double time_since(const net *n)
+static double time_since(const flow_net *n)
 {
     const double *time = n->b->element_state[FLOW_TIME];
     double last = -1;
@@ -645,7 +521,7 @@ static double time_since(const net *n)
 }
 
 /* Whether some element has not been solved yet: one that was placed now. */
-static bool is_new(const net *n)
+static bool is_new(const flow_net *n)
 {
     bool some = false;
     for (size_t e = 0; e < n->cells; e++)
@@ -653,32 +529,50 @@ static bool is_new(const net *n)
     return some;
 }
 
-static tl_status solve(net *n, tl_report *report)
+/* Solves the equations without storage. false: they do not converge. */
+static bool find_steady(flow_net *n)
 {
-    if (!build(n))
-        return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
+    const size_t bytes = n->cells * sizeof *n->x;
+    memcpy(n->extra, n->leak, bytes);
+    memcpy(n->diagonal, n->linked, bytes);
+    memcpy(n->r, n->source, bytes);
+    return flow_iterate(n);
+}
+
+static tl_status solve(flow_net *n, tl_report *report)
+{
+    tl_status status = build(n) ? TL_OK : TL_E_MEMORY;
     n->step = n->p->steady ? 0 : time_since(n);
     n->flows = n->p->steady || n->step > 0 || is_new(n);
-    if (n->p->steady &&
+    if (status == TL_OK && n->p->steady &&
         !flow_find_closed(n->cells, n->first, n->crossing, n->crossings, n->open, n->drained, n->closed))
-        return refuse(report, TL_E_MEMORY, "out of memory for the flow in %u wet joints", n->b->count);
-    still(n);
-    set_up(n);
-    const bool follows = n->step > 0;
-    if (follows ? !follow(n) : n->p->steady && !take_step(n, INFINITY))
-        return refuse(report, TL_E_NUMERIC,
+        status = TL_E_MEMORY;
+    if (status == TL_OK) {
+        still(n);
+        set_up(n);
+        if (!n->p->steady)
+            flow_count_water(n);
+        if (n->step > 0)
+            status = flow_follow(n);
+        else if (n->p->steady && !find_steady(n))
+            status = TL_E_NUMERIC;
+    }
+    if (status == TL_E_MEMORY)
+        return refuse(report, status, "out of memory for the flow in %u wet joints", n->b->count);
+    if (status != TL_OK)
+        return refuse(report, status,
                       "the flow does not converge in %d iterations for each of %u joints: bring residual and "
                       "maximum, %g and %g m, nearer to each other",
                       MOST_ITERATIONS, n->b->count, n->p->residual, n->p->maximum);
-    for (size_t e = 0; e < n->cells; e++)
-        n->mean[e] = follows && n->store[e] > 0 ? n->mean[e] : n->x[e];
+    if (!(n->step > 0))
+        memcpy(n->mean, n->x, n->cells * sizeof *n->x);
     give_all(n);
     return TL_OK;
 }
 
 tl_status flow_solve(const void *self, const tl_element_batch *batch, tl_report *report)
 {
-    net n = {.p = self, .b = batch, .cells = batch->count};
+    flow_net n = {.p = self, .b = batch, .cells = batch->count};
     const tl_status status = solve(&n, report);
     release(&n);
     return status;
