@@ -100,6 +100,13 @@ static inline int check_cases(int count)
     return some > 0 ? some : 1;
 }
 
+/* Of `count` cases that random draws are to give at the least: what one in TALUS_TEST_SHARE of all draws gives, and by chance a
+ * few less. */
+static inline int check_least(int count)
+{
+    return check_cases(count) - 4;
+}
+
 /* Whether case i is one of them. */
 static inline int check_takes(size_t i)
 {

@@ -50,7 +50,7 @@ check.equal(fine.reason, "rest")
 check.holds(fine.cycles < 5 * coarse.cycles, string.format("%d and %d steps", coarse.cycles, fine.cycles))
 
 -- On any number of threads, and from a save that was made meanwhile, it goes on to the same bits.
-local file = "rest_zones.talus"
+local file = os.getenv "TALUS_TEST_TMP" .. "/rest_zones" .. tostring({}):match "0x(%x+)" .. ".talus"
 local function tilted(threads)
     return cube { gravity = { 3, 1, -10 }, threads = threads }
 end
