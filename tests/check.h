@@ -100,11 +100,12 @@ static inline int check_cases(int count)
     return some > 0 ? some : 1;
 }
 
-/* Of `count` cases that random draws are to give at the least: what one in TALUS_TEST_SHARE of all draws gives, and by chance a
- * few less. */
+/* How many cases random draws are to give at the least, where all of them give `count`: of one draw in TALUS_TEST_SHARE
+ * by chance up to a quarter fewer, and up to four. */
 static inline int check_least(int count)
 {
-    return check_cases(count) - 4;
+    int some = check_cases(count), fewer = some / 4 < 4 ? some / 4 : 4;
+    return some < count ? some - fewer : count;
 }
 
 /* Whether case i is one of them. */
