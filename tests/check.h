@@ -101,11 +101,13 @@ static inline int check_cases(int count)
 }
 
 /* How many cases random draws are to give at the least, where all of them give `count`: of one draw in TALUS_TEST_SHARE
- * by chance up to a quarter fewer, and up to four. */
+ * fewer by two standard deviations of a count, 2 sqrt(n). */
 static inline int check_least(int count)
 {
-    int some = check_cases(count), fewer = some / 4 < 4 ? some / 4 : 4;
-    return some < count ? some - fewer : count;
+    int some = check_cases(count), fewer = 0;
+    while (some < count && (fewer + 1) * (fewer + 1) <= 4 * some)
+        fewer++;
+    return some > fewer ? some - fewer : 0;
 }
 
 /* Whether case i is one of them. */
