@@ -100,12 +100,12 @@ static inline int check_cases(int count)
     return some > 0 ? some : 1;
 }
 
-/* How many cases random draws are to give at the least, where all of them give `count`: of one draw in TALUS_TEST_SHARE
- * fewer by two standard deviations of a count, 2 sqrt(n). */
+/* How many cases random draws are to give at the least, where all of them give `count`. Of fewer than one draw in ten
+ * they are so few that chance counts: two standard deviations less, 2 sqrt(n). */
 static inline int check_least(int count)
 {
     int some = check_cases(count), fewer = 0;
-    while (some < count && (fewer + 1) * (fewer + 1) <= 4 * some)
+    while (some < count / 10 && (fewer + 1) * (fewer + 1) <= 4 * some)
         fewer++;
     return some > fewer ? some - fewer : 0;
 }
