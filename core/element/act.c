@@ -46,7 +46,7 @@ TL_IN_LOOP void move_carried(tl_node_table *n, size_t row, uint32_t count, doubl
                              size_t i)
 {
     for (int k = 0; k < 3; k++) {
-        const double *restrict base = n->base[k] + row;
+        const double *restrict base = tl_node_bases(n)[k] + row;
         double *restrict before = n->u[k] + row, *restrict du = lanes->du[k] + i, *restrict v = lanes->v[k] + i;
 #pragma omp simd
         for (uint32_t l = 0; l < count; l++) {
