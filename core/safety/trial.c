@@ -180,7 +180,8 @@ typedef struct watch {
     look *look;       /* [bodies] */
     tl_vec3 *pull;    /* [bodies], force of elements now, N */
     int32_t still;    /* looks in a row in which all bodies stood still */
-    bool rigid_trial; /* of a trial, not of a first copy, and only joints give */
+    bool weakened;    /* of a trial, not of a first copy */
+    bool rigid_trial; /* ... in which only joints give */
     int64_t looked;   /* cycle of the last look */
     bool fails;
     tl_id *held; /* a block of each body that is held while others go on */
@@ -293,7 +294,7 @@ static bool looks(void *user, tl_model *copy)
     }
     w->still = still ? w->still + 1 : 0;
     w->held_looks++;
-    w->few = w->rigid_trial && few_move(w, copy);
+    w->few = w->weakened && !tl_model_deforms(copy) && few_move(w, copy);
     return w->fails || stands_still(w) || w->few || lets_go(w);
 }
 
@@ -472,6 +473,7 @@ static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
         return status;
     if (!watch_begin(&next, w->t, copy))
         return tl_fail_memory(&w->t->asked->error);
+    next.weakened = w->weakened;
     next.rigid_trial = w->rigid_trial;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         for (size_t row = 0; row < before; row++)
@@ -524,6 +526,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool weakened, tl_safety_t
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
+    w.weakened = weakened;
     w.rigid_trial = weakened && !tl_model_deforms(copy) && !copy->elements;
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
