@@ -2,13 +2,14 @@
  *
  * A copy of the model comes to rest with its strengths raised by 1 / TL_LEAST_FACTOR. Elastic joints settle then, and
  * nothing slips. This copy is the base. A trial has the strengths of the model divided by its factor. It begins with a
- * copy of the last trial that rests, or of the base. It comes to rest (cycle/relax.c) or something moves on.
+ * copy of the base, and comes to rest (cycle/relax.c), or something moves on. From then on a copy that rests is the
+ * base.
  *
  * Friction bears the same weight by many sets of forces. Which of them blocks slip into hangs on the way there, and
  * where strengths are lowered at once by much, on rounding as well. A trial that rests has found one that bears. One
  * that fails has not, for it may have swung past them. So what fails counts once strengths were lowered step by step,
  * and by no more than STEP at the last. Zones yield by one way only, and each trial would strain them further: where
- * blocks deform, each begins with the base.
+ * blocks deform, each begins with the first base.
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
@@ -577,26 +578,10 @@ static void forget_made(tl_trials *t)
     t->ahead_count = 0;
 }
 
-/* Forgets the last trial that rests: the next one begins with the base. */
-static void begin_anew(tl_trials *t)
-{
-    forget_made(t);
-    if (t->from)
-        tl_model_destroy(t->from);
-    t->from = NULL;
-    t->reached = TL_LEAST_FACTOR;
-    t->small_count = 0;
-}
-
 tl_model *tl_trials_go_on(tl_trials *t)
 {
     forget_made(t);
-    if (t->from) {
-        tl_model_destroy(t->base);
-        t->base = t->from;
-        t->from = NULL;
-        t->small_count = 0;
-    }
+    t->small_count = 0;
     return t->base;
 }
 
@@ -617,7 +602,7 @@ static tl_status make_base(tl_trials *t, tl_fall *fall, bool *rests)
 {
     tl_safety_trial trial;
     t->base = NULL;
-    begin_anew(t);
+    t->reached = TL_LEAST_FACTOR;
     t->measured = false;
     t->window = 100;
     tl_status status = copy_of(t, t->asked, &t->base);
@@ -697,11 +682,12 @@ static tl_status keep(tl_trials *t, tl_model *copy, double factor, const tl_fall
 {
     if (!tl_grow(&t->small, &t->small_capacity, fall->small_count + 1, sizeof *t->small))
         return tl_fail_memory(&t->asked->error);
-    begin_anew(t);
+    forget_made(t);
     if (fall->small_count > 0)
         memcpy(t->small, fall->small, fall->small_count * sizeof *t->small);
     t->small_count = fall->small_count;
-    t->from = copy;
+    tl_model_destroy(t->base);
+    t->base = copy;
     t->reached = factor;
     return TL_OK;
 }
@@ -724,14 +710,14 @@ static tl_status make_one(tl_trials *t, double factor, tl_safety_trial *trial, t
     tl_model *copy = NULL;
     tl_status status = begin_fall(t, fall);
     if (status == TL_OK)
-        status = copy_of(t, t->from ? t->from : t->base, &copy);
+        status = copy_of(t, t->base, &copy);
     if (status == TL_OK)
         status = weaken(t, copy, factor);
     if (status == TL_OK)
         status = settle(t, copy, true, trial, fall);
     if (status == TL_OK && trial->holds && tl_trials_by_steps(t))
         status = keep(t, copy, factor, fall);
-    if (copy && copy != t->from)
+    if (copy && copy != t->base)
         tl_model_destroy(copy);
     return status;
 }
@@ -833,7 +819,7 @@ tl_status tl_trials_try(tl_trials *t, double factor, bool sure, tl_safety_trial 
 
 void tl_trials_end(tl_trials *t)
 {
-    begin_anew(t);
+    forget_made(t);
     if (t->base)
         tl_model_destroy(t->base);
     free(t->small);
