@@ -52,8 +52,8 @@ static void do_trial(void *user, uint64_t job, const void **data, size_t *size)
     unsigned char *state = NULL;
     t->options.on_trial = NULL;
     r.made = tl_trials_try(t, of->factor[job], of->by_steps[job], &r.trial, &r.fall) == TL_OK;
-    if (r.made && t->from)
-        r.made = tl_model_bytes(t->from, &state, &r.state_bytes) == TL_OK;
+    if (r.made && r.trial.holds && tl_trials_by_steps(t))
+        r.made = tl_model_bytes(t->base, &state, &r.state_bytes) == TL_OK;
     const size_t ids = r.made ? r.fall.count * sizeof *r.fall.ids : 0;
     const size_t small = r.made ? r.fall.small_count * sizeof *r.fall.small : 0;
     of->bytes = malloc(sizeof r + ids + small + r.state_bytes);

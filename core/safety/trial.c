@@ -2,13 +2,14 @@
  *
  * A copy of the model comes to rest with its strengths raised by 1 / TL_LEAST_FACTOR. Elastic joints settle then, and
  * nothing slips. This copy is the base. A trial has the strengths of the model divided by its factor. It begins with a
- * copy of the last trial that rests, or of the base. It comes to rest (cycle/relax.c) or something moves on.
+ * copy of the base, and comes to rest (cycle/relax.c), or something moves on. From then on a copy that rests is the
+ * base.
  *
  * Friction bears the same weight by many sets of forces. Which of them blocks slip into hangs on the way there, and
  * where strengths are lowered at once by much, on rounding as well. A trial that rests has found one that bears. One
  * that fails has not, for it may have swung past them. So what fails counts once strengths were lowered step by step,
  * and by no more than STEP at the last. Zones yield by one way only, and each trial would strain them further: where
- * blocks deform, each begins with the base.
+ * blocks deform, each begins with the first base.
  *
  * Two scales come from the model itself: u, how far its joints and elements settle under what they bear, and N, the
  * steps in which the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its
@@ -24,6 +25,11 @@
  *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone SUSPECT u. While joints settle
  * and blocks slip until they lock, all bodies go one way. Of a sliver that is soon a multiple of its size.
+ *
+ * What fails is often a few bodies beside many that stand. So once a body has gone SUSPECT u, and most bodies have not
+ * moved since the last look, these are held while it goes on: their contacts then cost nothing. What fails beside held
+ * neighbours fails beside free ones, which bear no more. What comes to rest beside them counts only once it also does
+ * with all of them let go.
  *
  * Where contacts chatter, forces need thousands of steps to balance while nothing moves. So a trial also rests in which
  * no body has moved by STILL u in STILLS looks in a row. A body whose unbalanced force is e of its weight goes by
@@ -82,6 +88,8 @@
  * Test: lua/test_safety_rock. */
 #define STILL 0.005
 #define STILLS 4
+/* Cost only: looks after which bodies that are held for others are let go. */
+#define HELD_LOOKS 64
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
 #define STEPS_A_BLOCK 16
 /* Tolerance: speed over that of the fastest body that fails, and way likewise, from which on another goes with it. */
@@ -161,6 +169,8 @@ typedef struct look {
     tl_quat turned;      /* when it began */
     double way;          /* between the last two looks, m */
     double corner;       /* how far its corners had gone by rotation at the last look, m */
+    double moves;        /* way of the body and its corners between these, m */
+    bool stands;         /* it has not moved since the look before, and nothing holds it */
     int32_t grows;       /* looks in a row in which it did not become slower */
     tl_vec3 pulled;      /* force of elements at the last look, N */
     tl_vec3 from;        /* displacement when elements tightened last, or at the start */
@@ -171,11 +181,16 @@ typedef struct watch {
     look *look;       /* [bodies] */
     tl_vec3 *pull;    /* [bodies], force of elements now, N */
     int32_t still;    /* looks in a row in which all bodies stood still */
-    bool rigid_trial; /* of a trial, not of a first copy, and only joints give */
+    bool weakened;    /* of a trial, not of a first copy */
+    bool rigid_trial; /* ... in which only joints give */
     int64_t looked;   /* cycle of the last look */
     bool fails;
-    tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
-    bool strained; /* ... for it is strained on and on */
+    tl_id *held; /* a block of each body that is held while others go on */
+    size_t held_count;
+    int32_t held_looks; /* since then */
+    bool few;           /* few bodies have moved since the last look, and one of them may fail */
+    tl_id verdict;      /* the body of which a relaxation says that it fails, or TL_NO_ID */
+    bool strained;      /* ... for it is strained on and on */
     const char *why;
 } watch;
 
@@ -184,6 +199,11 @@ static tl_status on_step(void *user, tl_model *copy)
     const watch *w = user;
     (void)copy;
     return tl_model_interrupted(w->t->asked) ? TL_E_CANCELLED : TL_OK;
+}
+
+static double gone_of(const watch *w, const tl_model *m, uint32_t body)
+{
+    return tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->look[body].start));
 }
 
 static bool is_far(const watch *w, const tl_model *copy, uint32_t body)
@@ -217,7 +237,31 @@ static bool stands_still(const watch *w)
     return w->rigid_trial && w->still >= STILLS;
 }
 
-/* Looks at all bodies; true when some one fails, or all stand still. */
+/* Whether what is held is to be let go before what moves has failed or come to rest. */
+static bool lets_go(const watch *w)
+{
+    return w->held_count > 0 && w->held_looks >= HELD_LOOKS;
+}
+
+/* Whether, since the last look, most bodies have not moved beside one that may fail: notes which. */
+static bool few_move(watch *w, const tl_model *copy)
+{
+    const tl_bodies *b = &copy->bodies;
+    const double settles = w->t->settles;
+    size_t stand = 0, move = 0;
+    bool suspect = false;
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        look *l = &w->look[body];
+        const bool moves = tl_body_is_free(copy, body) && l->moves > STANDS * settles;
+        l->stands = !b->fixed[body] && !moves;
+        stand += l->stands;
+        move += moves;
+        suspect = suspect || (moves && gone_of(w, copy, body) > SUSPECT * settles);
+    }
+    return suspect && stand > move;
+}
+
+/* Looks at all bodies; true when some one fails, all stand still, or others are to be held. */
 static bool looks(void *user, tl_model *copy)
 {
     watch *w = user;
@@ -237,7 +281,8 @@ static bool looks(void *user, tl_model *copy)
         l->last = u;
         l->way = way;
         const double corner = turned_of(copy, l, body);
-        still = still && way + fabs(corner - l->corner) <= STILL * settles;
+        l->moves = way + fabs(corner - l->corner);
+        still = still && l->moves <= STILL * settles;
         l->corner = corner;
         l->pulled = w->pull[body];
         if (caught)
@@ -249,15 +294,42 @@ static bool looks(void *user, tl_model *copy)
         w->fails = true;
     }
     w->still = still ? w->still + 1 : 0;
-    return w->fails || stands_still(w);
+    w->held_looks++;
+    w->few = w->weakened && !tl_model_deforms(copy) && few_move(w, copy);
+    return w->fails || stands_still(w) || w->few || lets_go(w);
+}
+
+/* Holds the bodies that stand. */
+static tl_status hold_others(watch *w, tl_model *copy)
+{
+    const size_t before = w->held_count;
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
+        if (w->look[body].stands) {
+            w->held[w->held_count++] = copy->blocks.id[tl_body_blocks(copy, body)[0]];
+            w->look[body].stands = false;
+        }
+    w->held_looks = 0;
+    w->few = false;
+    return told(w->t, copy, tl_blocks_fix(copy, w->held + before, w->held_count - before, TL_FIX_ALL));
+}
+
+/* Lets go what is held. */
+static tl_status release(watch *w, tl_model *copy)
+{
+    const size_t count = w->held_count;
+    w->held_count = 0;
+    w->still = 0;
+    return told(w->t, copy, tl_blocks_free(copy, w->held, count));
 }
 
 static void watch_end(watch *w)
 {
     free(w->look);
     free(w->pull);
+    free(w->held);
     w->look = NULL;
     w->pull = NULL;
+    w->held = NULL;
 }
 
 static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
@@ -266,8 +338,9 @@ static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
                  .looked = copy->cycles,
                  .verdict = TL_NO_ID,
                  .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look),
-                 .pull = calloc(copy->bodies.table.rows + 1, sizeof *w->pull)};
-    if (!w->look || !w->pull) {
+                 .pull = calloc(copy->bodies.table.rows + 1, sizeof *w->pull),
+                 .held = calloc(copy->bodies.table.rows + 1, sizeof *w->held)};
+    if (!w->look || !w->pull || !w->held) {
         watch_end(w);
         return false;
     }
@@ -280,11 +353,6 @@ static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
                                .turned = copy->bodies.q[body],
                                .pulled = w->pull[body]};
     return true;
-}
-
-static double gone_of(const watch *w, const tl_model *m, uint32_t body)
-{
-    return tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->look[body].start));
 }
 
 static bool body_fails(const watch *w, const tl_model *m, uint32_t body)
@@ -394,16 +462,19 @@ static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
         return tl_fail_memory(&w->t->asked->error);
     memcpy(fall->small + fall->small_count, fall->ids, fall->count * sizeof *fall->ids);
     fall->small_count = all;
-    const tl_status status = told(w->t, copy, tl_blocks_delete(copy, fall->ids, fall->count));
+    tl_status status = told(w->t, copy, tl_blocks_delete(copy, fall->ids, fall->count));
     free(fall->ids);
     fall->ids = NULL;
     fall->count = 0;
     const look *old = w->look;
     watch next;
+    if (status == TL_OK)
+        status = release(w, copy);
     if (status != TL_OK)
         return status;
     if (!watch_begin(&next, w->t, copy))
         return tl_fail_memory(&w->t->asked->error);
+    next.weakened = w->weakened;
     next.rigid_trial = w->rigid_trial;
     for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
         for (size_t row = 0; row < before; row++)
@@ -421,7 +492,12 @@ static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_sa
     const tl_trials *t = w->t;
     const tl_solve_reason reason = r->run.reason;
     const bool left = trial->cycles < t->options.max_cycles;
-    trial->holds = reason == TL_SOLVE_REST || (!w->fails && stands_still(w));
+    const bool rests = reason == TL_SOLVE_REST || (!w->fails && stands_still(w));
+    if (left && !w->fails && w->few)
+        return hold_others(w, copy);
+    if (left && !w->fails && ((rests && w->held_count > 0) || lets_go(w)))
+        return release(w, copy);
+    trial->holds = rests && w->held_count == 0;
     if (reason == TL_SOLVE_OVERLAP)
         return tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r->message,
                        tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
@@ -451,6 +527,7 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool weakened, tl_safety_t
     *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
+    w.weakened = weakened;
     w.rigid_trial = weakened && !tl_model_deforms(copy) && !copy->elements;
     for (bool over = false; status == TL_OK && !over;) {
         tl_relax relax = tl_relax_default();
@@ -501,26 +578,10 @@ static void forget_made(tl_trials *t)
     t->ahead_count = 0;
 }
 
-/* Forgets the last trial that rests: the next one begins with the base. */
-static void begin_anew(tl_trials *t)
-{
-    forget_made(t);
-    if (t->from)
-        tl_model_destroy(t->from);
-    t->from = NULL;
-    t->reached = TL_LEAST_FACTOR;
-    t->small_count = 0;
-}
-
 tl_model *tl_trials_go_on(tl_trials *t)
 {
     forget_made(t);
-    if (t->from) {
-        tl_model_destroy(t->base);
-        t->base = t->from;
-        t->from = NULL;
-        t->small_count = 0;
-    }
+    t->small_count = 0;
     return t->base;
 }
 
@@ -541,7 +602,7 @@ static tl_status make_base(tl_trials *t, tl_fall *fall, bool *rests)
 {
     tl_safety_trial trial;
     t->base = NULL;
-    begin_anew(t);
+    t->reached = TL_LEAST_FACTOR;
     t->measured = false;
     t->window = 100;
     tl_status status = copy_of(t, t->asked, &t->base);
@@ -621,11 +682,12 @@ static tl_status keep(tl_trials *t, tl_model *copy, double factor, const tl_fall
 {
     if (!tl_grow(&t->small, &t->small_capacity, fall->small_count + 1, sizeof *t->small))
         return tl_fail_memory(&t->asked->error);
-    begin_anew(t);
+    forget_made(t);
     if (fall->small_count > 0)
         memcpy(t->small, fall->small, fall->small_count * sizeof *t->small);
     t->small_count = fall->small_count;
-    t->from = copy;
+    tl_model_destroy(t->base);
+    t->base = copy;
     t->reached = factor;
     return TL_OK;
 }
@@ -648,14 +710,14 @@ static tl_status make_one(tl_trials *t, double factor, tl_safety_trial *trial, t
     tl_model *copy = NULL;
     tl_status status = begin_fall(t, fall);
     if (status == TL_OK)
-        status = copy_of(t, t->from ? t->from : t->base, &copy);
+        status = copy_of(t, t->base, &copy);
     if (status == TL_OK)
         status = weaken(t, copy, factor);
     if (status == TL_OK)
         status = settle(t, copy, true, trial, fall);
     if (status == TL_OK && trial->holds && tl_trials_by_steps(t))
         status = keep(t, copy, factor, fall);
-    if (copy && copy != t->from)
+    if (copy && copy != t->base)
         tl_model_destroy(copy);
     return status;
 }
@@ -757,7 +819,7 @@ tl_status tl_trials_try(tl_trials *t, double factor, bool sure, tl_safety_trial 
 
 void tl_trials_end(tl_trials *t)
 {
-    begin_anew(t);
+    forget_made(t);
     if (t->base)
         tl_model_destroy(t->base);
     free(t->small);

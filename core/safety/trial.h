@@ -31,9 +31,8 @@ typedef struct tl_trials {
     tl_model *asked;  /* stays as it is */
     tl_safety options;
     uint8_t *which; /* of the laws: whether strengths are divided */
-    tl_model *base; /* a copy of the model that has come to rest with high strengths */
-    tl_model *from; /* the copy of the last trial that rests, with which the next one begins; NULL: the base */
-    double reached; /* factor of that trial; of the base TL_LEAST_FACTOR */
+    tl_model *base; /* what a trial begins with: the copy of the last one that rests, or one with high strengths */
+    double reached; /* factor of that trial, or TL_LEAST_FACTOR */
     tl_id *small;   /* what was small and has failed on the way there */
     size_t small_count, small_capacity;
     double stiffness;  /* of its joints, over that of the model */
@@ -54,12 +53,11 @@ void tl_trial_ahead_free(tl_trial_ahead *made);
 /* Checks what is asked and how the model is, and makes the copy. TL_OK, and fall->count > 0: it does not come to rest
  * even with high strengths; the copy then has not. Small blocks that do not are deleted in the copy. */
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall);
-/* Makes the last trial that rests the base, where there is one, and gives the base: blocks of it may then be deleted or
- * held. */
+/* The base, of which blocks may be deleted or held. */
 tl_model *tl_trials_go_on(tl_trials *t);
 /* Brings the base to rest again, with high strengths. */
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall);
-/* Whether a trial begins with the last one that rests. In a model with zones each begins with the base. */
+/* Whether a trial begins with the last one that rests. In a model with zones each begins with the first copy. */
 bool tl_trials_by_steps(const tl_trials *t);
 /* Makes a trial. It fails: `fall` has what does. `sure`: where it fails at once, strengths are lowered step by step
  * from the last trial that rests. Small blocks that fail are deleted in its own copy only. */

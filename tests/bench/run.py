@@ -3,7 +3,7 @@
 
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
-NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest realisations edits output terrain
+NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest realisations safety edits output terrain
 examples yade beside million cuts solids zones deformable elements); without names all run. --quick takes smaller models. --renew writes
 docs/performance/MACHINE.csv and the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
@@ -192,6 +192,11 @@ def realisations(r):
     r.script("realisations", f"rows={300 if r.quick else 10000}", "workers=1,2")
 
 
+def safety(r):
+    """Factors of safety of cut rock, and maps of them."""
+    r.script("safety", *(["factor=slope,4", "map=slope"] if r.quick else []))
+
+
 def output(r):
     """Where there is one, in a folder that is memory: the figures are of the program and not of the disk."""
     r.script("output", f"blocks={5000 if r.quick else 100000}", "threads=1,2", f"reps={3 if r.quick else 5}",
@@ -257,7 +262,7 @@ def elements(r):
 
 
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest,
-                                      realisations, edits, output, terrain, examples, yade, beside, million, cuts, solids, zones, deformable,
+                                      realisations, safety, edits, output, terrain, examples, yade, beside, million, cuts, solids, zones, deformable,
                                       elements)}
 
 

@@ -2,6 +2,7 @@
 -- program only: the models are the same ones with a stock Lua.
 package.path = "scripts/?.lua;" .. package.path -- run in the source root
 local check = require "check"
+local cut_bench = require "cut_bench"
 local slope = require "examples.slope"
 local talus = require "talus"
 
@@ -54,32 +55,8 @@ check.near(r.factor / (tangent(FRICTION) / tangent(FLAT)), 1, 0.012)
 
 -- ------------------------------------------------------------ cut rock
 
--- A bench of 168 free blocks, as three sets of joints cut it.
-local SETS = { { "A", 48, 285 }, { "B", 75, 200 }, { "C", 65, 95 } }
-local X, Y, Z, FACE = 25, 20, 15, 62
-local function bench(spacing, seed, friction)
-    local model, corners, crest = talus.model { gravity = { 0, 0, -10 }, seed = seed }, {}, Z / tangent(FACE)
-    model:generate("box", { { min = { 0, 0, -1 }, max = { X, Y, 0 }, density = 2600 }, { min = { X, 0, 0 }, max = { X + 1, Y, Z },
-        density = 2600 }, { min = { 0, -1, 0 }, max = { X, 0, Z }, density = 2600 }, { min = { 0, Y, 0 }, max = { X, Y + 1, Z },
-        density = 2600 } })
-    model:blocks():fix():hide()
-    for _, y in ipairs { 0, Y } do
-        for _, at in ipairs { { 0, 0 }, { X, 0 }, { X, Z }, { crest, Z } } do
-            corners[#corners + 1] = { at[1], y, at[2] }
-        end
-    end
-    model:generate("polyhedron", { vertices = corners, density = 2600 })
-    for _, set in ipairs(SETS) do
-        model:generate("jointset", { joint = set[1], dip = set[2], dip_direction = set[3], dip_dev = 8, dip_direction_dev = 8,
-            spacing = spacing, spacing_dev = 0.3 * spacing, number = math.ceil(36 / spacing), origin = { 0, Y / 2, 0 } })
-    end
-    model:blocks { hidden = true }:show()
-    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = friction })
-    return model
-end
-
 -- Slivers chatter at 0.71, and nothing moves: that is rest.
-local rock = bench(4, 2, 35)
+local rock = cut_bench.build(4, 2, 35)
 check.equal(#rock:blocks { fixed = false }, 168)
 local still = rock:factor_of_safety { from = 0.69, to = 0.71, resolution = 0.02, least_volume = 0.1, max_cycles = 20000 }
 check.equal(still.undecided, 0)
