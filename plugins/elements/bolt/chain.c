@@ -23,11 +23,6 @@
 
 /* Limit: Newton passes before w is found directly, and after that, against rounding. Test: lua/test_bolts_at_random. */
 #define PASSES 6
-/* Limit: parts of one pass that are tried; the part that is reached is good enough. Test: lua/test_bolts_at_random. */
-#define SEARCH 12
-/* Tolerance: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. Test:
- * lua/test_bolts_at_random. */
-#define OVERSHOT 0.5
 /* Tolerance: relative to the largest force of the bolt, the unbalance with which the passes end. */
 #define BALANCED 1e-11
 /* Tolerance: the same, relative to what rounding of w makes with the stiffest part. Test: lua/test_bolt. */
@@ -183,47 +178,6 @@ static bool find_step(const chain *c, double *step)
     return larger(left.loose, right.loose) <= c->enough && (pivot > 0 || size(carried) <= c->enough);
 }
 
-/* An unbalance along a step, J: it falls to 0 at the best part of it. */
-static double along(const chain *c, const double *off, const double *step)
-{
-    double sum = 0;
-    for (uint32_t k = 0; k < c->count; k++)
-        sum += off[k] * step[k];
-    return sum;
-}
-
-/* Goes a part of a step on from `from`. Whether the steel is in equilibrium there. */
-static bool go(chain *c, const double *from, const double *step, double part)
-{
-    for (uint32_t k = 0; k < c->count; k++)
-        c->w[k] = from[k] + part * step[k];
-    return respond(c);
-}
-
-/* A Newton pass from where forces and unbalance are known, by a step. Where it goes too far, beyond where the energy
- * along the step is least, it goes back. Whether the steel is in equilibrium. */
-static bool advance(chain *c, const double *step)
-{
-    double from[TL_ELEMENT_NODES], off[TL_ELEMENT_NODES], least = 0, most = 1;
-    memcpy(from, c->w, c->count * sizeof *from);
-    memcpy(off, c->off, c->count * sizeof *off);
-    if (go(c, from, step, 1))
-        return true;
-    const double begin = along(c, off, step);
-    double low = begin, high = along(c, c->off, step);
-    for (int k = 0; k < SEARCH && high < -OVERSHOT * begin; k++) {
-        const double part = k % 3 == 2 ? 0.5 * (least + most) : least + (most - least) * low / (low - high);
-        if (go(c, from, step, part))
-            return true;
-        const double at = along(c, c->off, step);
-        if (fabs(at) <= OVERSHOT * begin)
-            break;
-        *(at > 0 ? &least : &most) = part;
-        *(at > 0 ? &low : &high) = at;
-    }
-    return false;
-}
-
 /* ---------------------------------------------------------------- direct ----------------- */
 
 typedef struct knot {
@@ -359,7 +313,9 @@ static bool pass(chain *c)
     for (int k = 0; k < PASSES && !balanced; k++) {
         if (!find_step(c, step))
             return false;
-        balanced = advance(c, step);
+        for (uint32_t i = 0; i < c->count; i++)
+            c->w[i] += step[i];
+        balanced = respond(c);
     }
     return balanced;
 }
