@@ -27,7 +27,6 @@ static void add_columns(struct tl_elements *e)
     for (int k = 0; k < 3; k++) {
         TL_COLUMN(&n->table, n, rest[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, local[k], TL_COLUMN_STATE);
-        TL_COLUMN(&n->table, n, base[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, u[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
         TL_COLUMN(&n->table, n, force[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     }

@@ -100,7 +100,7 @@ void tl_steady_bring(tl_model *m)
             const uint32_t row = e->use[k];
             const tl_vec3 arm = tl_m3_mul(&s->turn[body], tl_columns_get(n->local, row));
             const tl_vec3 f = tl_m3_tmul(&s->from[body], tl_columns_get(n->force, row));
-            tl_columns_put(n->u, row, tl_v3_sub(tl_v3_add(s->at[body], arm), tl_columns_get(n->base, row)));
+            tl_columns_put(n->u, row, tl_v3_sub(tl_v3_add(s->at[body], arm), tl_columns_get(tl_node_bases(n), row)));
             tl_columns_put(n->force, row, tl_m3_mul(&s->turn[body], f));
         }
     }
