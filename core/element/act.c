@@ -366,8 +366,10 @@ double tl_elements_stiffness(const tl_model *m, uint32_t body)
 void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
 {
     const struct tl_elements *e = m->elements;
-    for (uint32_t k = 0; tl_elements_are_listed(m) && k < e->use_start[body + 1] - e->use_start[body]; k++) {
-        const uint32_t row = e->use[e->use_start[body] + k];
+    if (!tl_elements_are_listed(m) || (e->most_k == 0 && e->most_c == 0))
+        return;
+    for (uint32_t k = e->use_start[body]; k < e->use_start[body + 1]; k++) {
+        const uint32_t row = e->use[k];
         const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row)), c = tl_node_damping(&e->nodes, row);
         sum->stiffness.sum += e->nodes.k[row];
         sum->stiffness.r2 += e->nodes.k[row] * arm2;

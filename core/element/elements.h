@@ -86,6 +86,8 @@ typedef struct tl_steady_table {
     tl_vec3 *force;    /* N */
     tl_vec3 *moment;   /* N m, about its centroid */
     double *magnitude; /* N, sum of the lengths of the forces */
+    tl_vec3 *acts;     /* N, force, and */
+    tl_vec3 *turns;    /* N m, moment in the axes of the model, at the rotation of the last step */
     tl_vec3 *at;       /* m, displacement of the body in the last step, */
     tl_mat3 *turn;     /* and its rotation then */
     tl_mat3 *from;     /* likewise when its nodes were asked for their forces */
