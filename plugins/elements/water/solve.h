@@ -28,6 +28,8 @@ typedef struct flow_net {
     double *given;            /* of a crossing: its potential where it has a head, Pa */
     double *sum, *phi;        /* of a crossing: of t; its potential in the last product */
     double *x, *r, *way, *y;  /* of a cell: potential, Pa; residual, direction and product */
+    double *pivot, *z;        /* of a cell: of the preconditioner; the residual as that has it, Pa */
+    double *share, *later;    /* of a crossing: 1 / sum, 0 where it has a head; t of cells that are yet to come */
     double *extra, *diagonal; /* of a cell: of drains and storage; of the matrix, 0: its potential is given */
     double *leak, *linked;    /* of a cell: of drains; of the matrix without storage */
     double *source;           /* of a cell: right side without storage, m3/s */
