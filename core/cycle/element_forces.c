@@ -21,13 +21,6 @@ static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
         tl_elements_hold(m, body, sum);
 }
 
-static double stiffness(const tl_model *m, uint32_t body)
-{
-    tl_holding sum = {.law = 0};
-    tl_elements_hold(m, body, &sum);
-    return sum.stiffness.sum;
-}
-
 static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
 {
     table[0] = &m->elements->table.table;
@@ -57,7 +50,7 @@ void tl_elements_pull(const tl_model *m, tl_vec3 *force)
 const tl_contributor tl_elements_act = {.name = "elements",
                                         .apply = apply,
                                         .gather = tl_elements_gather,
-                                        .stiffness = stiffness,
+                                        .stiffness = tl_elements_stiffness,
                                         .hold = hold,
                                         .energies = tl_elements_energies,
                                         .tables = tables,

@@ -16,6 +16,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <talus/kit.h>
 
 /* ---------------------------------------------------------------- forces ----------------- */
 
@@ -24,42 +25,32 @@ typedef struct apply_job {
     tl_failure *failure;
 } apply_job;
 
-/* Cost only: nodes that are moved together; what they need of their bodies stays in the nearest cache. */
-#define TILE 64
-
-/* Displacements and rotations of the bodies of nodes, a column each. */
-typedef struct tile {
-    _Alignas(TL_ALIGN) double u[3][TILE], r[3][3][TILE];
-} tile;
-
-static void load_tile(const tl_model *m, uint32_t first, uint32_t count, tile *t)
+/* Where one rigid body has nodes [row, row + count) of its frame, less where it was made: of node `row` in lane i. */
+TL_IN_LOOP void carry_run(const tl_node_table *n, const tl_pose *pose, size_t row, uint32_t count,
+                          tl_element_lanes *lanes, size_t i)
 {
-    const tl_node_table *n = &m->elements->nodes;
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t body = n->body[first + i];
-        const tl_pose *pose = &m->bodies.pose[body == TL_NO_ROW ? 0 : body];
-        t->u[0][i] = pose->u.x;
-        t->u[1][i] = pose->u.y;
-        t->u[2][i] = pose->u.z;
-        for (int k = 0; k < 3; k++)
-            for (int l = 0; l < 3; l++)
-                t->r[k][l][i] = pose->r.m[k][l];
+    const double *restrict px = n->local[0] + row, *restrict py = n->local[1] + row, *restrict pz = n->local[2] + row;
+    double *restrict x = lanes->du[0] + i, *restrict y = lanes->du[1] + i, *restrict z = lanes->du[2] + i;
+    const tl_mat3 r = pose->r;
+    const tl_vec3 u = pose->u;
+    for (uint32_t l = 0; l < count; l++) {
+        const tl_vec3 at = tl_v3_add(u, tl_m3_mul(&r, tl_v3(px[l], py[l], pz[l])));
+        x[l] = at.x;
+        y[l] = at.y;
+        z[l] = at.z;
     }
 }
 
-/* The motion of the nodes of a tile as rigid bodies carry them: of node `row`, in lane i of the chunk. `per`: 1/s. */
-TL_VECTORIZED static void move_tile(tl_node_table *n, size_t row, uint32_t count, const tile *t, double per,
-                                    tl_element_lanes *lanes, size_t i)
+/* The motion of nodes from where carry_run has them. `per`: 1/s. */
+TL_IN_LOOP void move_carried(tl_node_table *n, size_t row, uint32_t count, double per, tl_element_lanes *lanes,
+                             size_t i)
 {
-    const double *restrict px = n->local[0] + row, *restrict py = n->local[1] + row, *restrict pz = n->local[2] + row;
     for (int k = 0; k < 3; k++) {
-        const double *restrict u = t->u[k], *restrict x = t->r[k][0], *restrict y = t->r[k][1];
-        const double *restrict z = t->r[k][2], *restrict base = n->base[k] + row;
+        const double *restrict base = tl_node_bases(n)[k] + row;
         double *restrict before = n->u[k] + row, *restrict du = lanes->du[k] + i, *restrict v = lanes->v[k] + i;
 #pragma omp simd
         for (uint32_t l = 0; l < count; l++) {
-            const double now = (u[l] + (x[l] * px[l] + y[l] * py[l] + z[l] * pz[l])) - base[l];
-            const double moved = now - before[l];
+            const double now = du[l] - base[l], moved = now - before[l];
             before[l] = now;
             du[l] = moved;
             v[l] = per * moved;
@@ -68,27 +59,27 @@ TL_VECTORIZED static void move_tile(tl_node_table *n, size_t row, uint32_t count
 }
 
 /* Their normals likewise. */
-TL_VECTORIZED static void turn_tile(const tl_node_table *n, size_t row, uint32_t count, const tile *t,
-                                    tl_element_lanes *lanes, size_t i)
+TL_IN_LOOP void turn_run(const tl_node_table *n, const tl_mat3 *r, size_t row, uint32_t count, tl_element_lanes *lanes,
+                         size_t i)
 {
     double *const *own = tl_node_normals(n);
     const double *restrict ox = own[0] + row, *restrict oy = own[1] + row, *restrict oz = own[2] + row;
     for (int k = 0; k < 3; k++) {
-        const double *restrict x = t->r[k][0], *restrict y = t->r[k][1], *restrict z = t->r[k][2];
+        const double x = r->m[k][0], y = r->m[k][1], z = r->m[k][2];
         double *restrict normal = lanes->normal[k] + i;
 #pragma omp simd
         for (uint32_t l = 0; l < count; l++) {
-            const double turned = x[l] * ox[l] + y[l] * oy[l] + z[l] * oz[l];
+            const double turned = x * ox[l] + y * oy[l] + z * oz[l];
             const double none = ox[l] * ox[l] + oy[l] * oy[l] + oz[l] * oz[l];
             normal[l] = none == 0 ? 0 : turned;
         }
     }
 }
 
-/* Of a node on the ground or in a zone, whose displacement had been `before`. */
-static void move_other(tl_model *m, uint32_t row, tl_vec3 before, double per, tl_element_lanes *lanes, size_t i)
+/* Of a node on the ground or in a zone. */
+static void move_other(tl_model *m, uint32_t row, double per, tl_element_lanes *lanes, size_t i)
 {
-    tl_columns_put(m->elements->nodes.u, row, before);
+    const tl_vec3 before = tl_columns_get(m->elements->nodes.u, row);
     const tl_vec3 u = tl_node_moved(m, row), du = tl_v3_sub(u, before);
     double *const to[3] = {lanes->du[0] + i, lanes->du[1] + i, lanes->du[2] + i};
     double *const v[3] = {lanes->v[0] + i, lanes->v[1] + i, lanes->v[2] + i};
@@ -99,32 +90,30 @@ static void move_other(tl_model *m, uint32_t row, tl_vec3 before, double per, tl
     tl_columns_put(m->elements->nodes.u, row, u);
 }
 
-/* Where the nodes of a chunk have gone since the last step. */
-static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes)
+/* Where the nodes of a chunk have gone since the last step: those on one body that follow each other at a time. */
+TL_VECTORIZED static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes)
 {
     tl_node_table *n = &m->elements->nodes;
     const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
     for (int k = 0; k < 3 && !n->outward[0]; k++)
         memset(lanes->normal[k], 0, (of->node_end - of->node_begin) * sizeof(double));
-    for (uint32_t row = of->node_begin; row < of->node_end; row += TILE) {
-        tile t;
-        uint32_t others = 0, other[TILE];
-        tl_vec3 before[TILE];
-        const uint32_t left = of->node_end - row, count = left < TILE ? left : TILE, i = row - of->node_begin;
-        for (uint32_t l = 0; l < count; l++)
-            if (n->body[row + l] == TL_NO_ROW || m->bodies.mesh[n->body[row + l]]) {
-                before[others] = tl_columns_get(n->u, row + l);
-                other[others++] = l;
-            }
-        if (others < count) {
-            load_tile(m, row, count, &t);
-            move_tile(n, row, count, &t, per, lanes, i);
+    uint32_t first = of->node_begin; /* of those on rigid bodies that follow each other */
+    for (uint32_t row = first, end; row < of->node_end; row = end) {
+        const uint32_t body = n->body[row], i = row - of->node_begin;
+        for (end = row + 1; end < of->node_end && n->body[end] == body;)
+            end++;
+        if (body != TL_NO_ROW && !m->bodies.mesh[body]) {
+            carry_run(n, &m->bodies.pose[body], row, end - row, lanes, i);
             if (n->outward[0])
-                turn_tile(n, row, count, &t, lanes, i);
+                turn_run(n, &m->bodies.pose[body].r, row, end - row, lanes, i);
+            continue;
         }
-        for (uint32_t k = 0; k < others; k++)
-            move_other(m, row + other[k], before[k], per, lanes, i + other[k]);
+        move_carried(n, first, row - first, per, lanes, first - of->node_begin);
+        for (uint32_t k = row; k < end; k++)
+            move_other(m, k, per, lanes, k - of->node_begin);
+        first = end;
     }
+    move_carried(n, first, of->node_end - first, per, lanes, first - of->node_begin);
 }
 
 /* Whether no number of a chunk is odd: sums of zeros, which are found fast. */
@@ -365,11 +354,22 @@ void tl_elements_stiffen(tl_model *m, double *damping)
     }
 }
 
+double tl_elements_stiffness(const tl_model *m, uint32_t body)
+{
+    const struct tl_elements *e = m->elements;
+    double sum = 0;
+    for (uint32_t k = 0; tl_elements_are_listed(m) && k < e->use_start[body + 1] - e->use_start[body]; k++)
+        sum += e->nodes.k[e->use[e->use_start[body] + k]];
+    return sum;
+}
+
 void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
 {
     const struct tl_elements *e = m->elements;
-    for (uint32_t k = 0; tl_elements_are_listed(m) && k < e->use_start[body + 1] - e->use_start[body]; k++) {
-        const uint32_t row = e->use[e->use_start[body] + k];
+    if (!tl_elements_are_listed(m) || (e->most_k == 0 && e->most_c == 0))
+        return;
+    for (uint32_t k = e->use_start[body]; k < e->use_start[body + 1]; k++) {
+        const uint32_t row = e->use[k];
         const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row)), c = tl_node_damping(&e->nodes, row);
         sum->stiffness.sum += e->nodes.k[row];
         sum->stiffness.r2 += e->nodes.k[row] * arm2;

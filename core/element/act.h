@@ -17,6 +17,8 @@ void tl_elements_gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acti
 void tl_elements_push(tl_model *m);
 /* Adds how stiff gridpoints are held, N/m, and to damping[rows of gridpoints] how they are damped, N s/m. */
 void tl_elements_stiffen(tl_model *m, double *damping);
+/* The sum of the stiffnesses of the nodes on a rigid body, N/m. */
+double tl_elements_stiffness(const tl_model *m, uint32_t body);
 /* How nodes hold a rigid body: stiffness and damping. */
 void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum);
 /* The largest stiffness, N/m, and damping, N s/m, of a node on a body that can move. */

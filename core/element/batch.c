@@ -11,7 +11,7 @@ tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *
     const size_t first = of->node_begin, count = of->node_end - first;
     const bool many = count > TL_ELEMENT_NODES;
     double *const room = many ? e->room + 9 * first : lanes->own[0];
-    const size_t stride = many ? count : TL_ELEMENT_NODES;
+    const size_t stride = many ? count : TL_LANES_ROOM;
     tl_element_batch batch = {.size = sizeof batch,
                               .count = of->end - of->begin,
                               .dt = tl_law_time(m, m->dt),

@@ -202,7 +202,8 @@ void tl_node_install(tl_model *m, size_t row, tl_vec3 place, tl_vec3 normal)
     const tl_vec3 local = local_of(m, body, tl_v3_sub(begun, x_ref));
     const tl_vec3 base = first != TL_NO_ROW ? shared(n, row, m->zones->points.u, first) : begun_of(m, body, local);
     tl_columns_put(n->local, row, local);
-    tl_columns_put(n->base, row, base);
+    if (n->base[0])
+        tl_columns_put(n->base, row, base);
     const tl_vec3 moved = first != TL_NO_ROW ? tl_v3_add(base, begun_of(m, body, local)) : base;
     if (n->from[0])
         tl_columns_put(n->from, row, tl_v3_sub(moved, made_of(made, local)));
@@ -234,7 +235,8 @@ void tl_node_reframe(tl_model *m, size_t row, uint32_t block)
         put_in_zone(m, row, false, tl_v3_add(x_ref, at), tl_m3_mul(&begun, normal));
         base = tl_v3_sub(base, at);
     }
-    tl_columns_put(n->base, row, base);
+    if (n->base[0])
+        tl_columns_put(n->base, row, base);
 }
 
 tl_vec3 tl_node_moved(const tl_model *m, size_t row)
@@ -246,7 +248,7 @@ tl_vec3 tl_node_moved(const tl_model *m, size_t row)
     const uint32_t first = tl_node_first_point(m, row);
     const tl_vec3 now = first != TL_NO_ROW ? shared(n, row, m->zones->points.u, first)
                                            : begun_of(m, body, tl_columns_get(n->local, row));
-    return tl_v3_sub(now, tl_columns_get(n->base, row));
+    return tl_v3_sub(now, tl_columns_get(tl_node_bases(n), row));
 }
 
 tl_vec3 tl_node_normal(const tl_model *m, size_t row)

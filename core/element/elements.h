@@ -54,7 +54,6 @@ typedef struct tl_node_table {
     tl_id *block;     /* TL_NO_ID: the ground; or TL_GONE */
     double *rest[3];  /* m, place when installed, from the model's origin */
     double *local[3]; /* m, in the body's frame */
-    double *base[3];  /* m */
     double *weight;   /* m or m2 */
     double *u[3];     /* m, displacement since it was installed, as of the last step */
     double *force[3]; /* N, on the block, in the last step */
@@ -63,6 +62,7 @@ typedef struct tl_node_table {
     double *k;      /* N/m, bound that the kind has told */
     uint32_t state_columns;
     /* What only some elements need: NULL until there are such. */
+    double *base[3];      /* m; NULL: it is `local`, as of nodes on blocks that had not moved */
     double *from[3];      /* m, how far the block had moved there since it was made; NULL: nowhere */
     double *outward[3];   /* normal of its face when its block was made, or 0; */
     double *normal[3];    /* likewise in the body's frame; NULL: it is the same */
@@ -86,6 +86,8 @@ typedef struct tl_steady_table {
     tl_vec3 *force;    /* N */
     tl_vec3 *moment;   /* N m, about its centroid */
     double *magnitude; /* N, sum of the lengths of the forces */
+    tl_vec3 *acts;     /* N, force, and */
+    tl_vec3 *turns;    /* N m, moment in the axes of the model, at the rotation of the last step */
     tl_vec3 *at;       /* m, displacement of the body in the last step, */
     tl_mat3 *turn;     /* and its rotation then */
     tl_mat3 *from;     /* likewise when its nodes were asked for their forces */
@@ -147,6 +149,12 @@ static inline bool tl_elements_are_listed(const tl_model *m)
 static inline tl_vec3 tl_node_from(const tl_node_table *n, size_t row)
 {
     return n->from[0] ? tl_v3(n->from[0][row], n->from[1][row], n->from[2][row]) : tl_v3(0, 0, 0);
+}
+
+/* Columns of base. */
+static inline double *const *tl_node_bases(const tl_node_table *n)
+{
+    return n->base[0] ? n->base : n->local;
 }
 
 /* Columns of the normals in the frames of bodies; their pointers are NULL where no node has one. */

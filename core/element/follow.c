@@ -105,6 +105,7 @@ tl_status tl_elements_follow(tl_model *m)
     if (!e || (e->followed == m->structure && e->zones == (m->zones ? m->zones->version : 0)))
         return TL_OK;
     if ((tl_model_deforms(m) && !tl_nodes_hold_zones(&e->nodes)) ||
+        ((tl_model_deforms(m) || m->blocks.made) && !tl_nodes_hold_base(&e->nodes)) ||
         (m->blocks.made && e->nodes.outward[0] && !tl_nodes_hold_normals(&e->nodes, true)))
         return tl_fail_memory(&m->error);
     tl_steady_let_go(m);

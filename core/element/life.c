@@ -27,7 +27,6 @@ static void add_columns(struct tl_elements *e)
     for (int k = 0; k < 3; k++) {
         TL_COLUMN(&n->table, n, rest[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, local[k], TL_COLUMN_STATE);
-        TL_COLUMN(&n->table, n, base[k], TL_COLUMN_STATE);
         TL_COLUMN(&n->table, n, u[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
         TL_COLUMN(&n->table, n, force[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     }
@@ -41,6 +40,8 @@ static void add_columns(struct tl_elements *e)
     TL_COLUMN(&s->table, s, force, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(&s->table, s, moment, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(&s->table, s, magnitude, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, acts, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, turns, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(&s->table, s, at, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(&s->table, s, turn, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(&s->table, s, from, TL_COLUMN_STATE | TL_COLUMN_STEP);

@@ -241,7 +241,7 @@ static bool hold_columns(const tl_placing *p)
         moved = moved || (row != TL_NO_ROW && tl_block_has_moved(p->m, row));
     }
     return (!faces || tl_nodes_hold_normals(n, p->m->blocks.made)) && (!zones || tl_nodes_hold_zones(n)) &&
-           (!moved || tl_nodes_hold_from(n));
+           (!moved || (tl_nodes_hold_base(n) && tl_nodes_hold_from(n)));
 }
 
 tl_status tl_placing_commit(tl_placing *p, uint32_t first_set)

@@ -188,6 +188,25 @@ static bool hold(tl_table *table, const tl_column *columns, size_t count)
     return there || tl_table_widen(table, columns, count);
 }
 
+/* The same with what other columns have. */
+static void fill(double *const to[3], double *const from[3], size_t rows)
+{
+    for (int k = 0; k < 3 && rows > 0; k++)
+        memcpy(to[k], from[k], rows * sizeof *to[k]);
+}
+
+bool tl_nodes_hold_base(tl_node_table *n)
+{
+    const tl_column columns[] = {TL_COLUMN_NEW(n, base[0], 0), TL_COLUMN_NEW(n, base[1], 0),
+                                 TL_COLUMN_NEW(n, base[2], 0)};
+    const bool had = n->base[0];
+    if (!hold(&n->table, columns, 3))
+        return false;
+    if (!had)
+        fill(n->base, n->local, n->table.rows);
+    return true;
+}
+
 bool tl_nodes_hold_from(tl_node_table *n)
 {
     const tl_column columns[] = {TL_COLUMN_NEW(n, from[0], 0), TL_COLUMN_NEW(n, from[1], 0),
@@ -204,8 +223,8 @@ bool tl_nodes_hold_normals(tl_node_table *n, bool turned)
     const bool had = n->normal[0];
     if (!hold(&n->table, outward, 3) || (turned && !hold(&n->table, normal, 3)))
         return false;
-    for (int k = 0; k < 3 && turned && !had && n->table.rows > 0; k++)
-        memcpy(n->normal[k], n->outward[k], n->table.rows * sizeof *n->normal[k]);
+    if (turned && !had)
+        fill(n->normal, n->outward, n->table.rows);
     return true;
 }
 

@@ -19,8 +19,9 @@ uint32_t tl_element_columns(const tl_kind *kind, bool whole);
 bool tl_element_column(const tl_kind *kind, const char *name, uint32_t *column, bool *whole);
 /* Gives the tables the columns of states that a kind needs. false: out of memory. */
 bool tl_elements_hold_states(struct tl_elements *e, uint32_t of_nodes, uint32_t of_whole);
-/* Likewise the columns of nodes on blocks that had moved, on faces (`turned`: whose normals are others in the frames of
- * bodies), in zones, or that are damped. */
+/* Likewise the columns of nodes whose base is not `local`, on blocks that had moved, on faces (`turned`: whose normals
+ * are others in the frames of bodies), in zones, or that are damped. */
+bool tl_nodes_hold_base(tl_node_table *n);
 bool tl_nodes_hold_from(tl_node_table *n);
 bool tl_nodes_hold_normals(tl_node_table *n, bool turned);
 bool tl_nodes_hold_zones(tl_node_table *n);

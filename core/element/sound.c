@@ -16,7 +16,7 @@ static bool places_are_sound(const tl_node_table *n, size_t row)
 {
     double sum = 0;
     for (int k = 0; k < 3; k++)
-        sum += n->rest[k][row] + n->local[k][row] + n->base[k][row] + n->u[k][row] +
+        sum += n->rest[k][row] + n->local[k][row] + tl_node_bases(n)[k][row] + n->u[k][row] +
                (n->from[k] ? n->from[k][row] : 0) + (n->outward[k] ? n->outward[k][row] : 0) +
                (n->normal[k] ? n->normal[k][row] : 0);
     return isfinite(sum) && n->weight[row] >= 0 && isfinite(n->weight[row]) && n->k[row] >= 0 &&

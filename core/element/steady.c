@@ -11,7 +11,8 @@
  *
  *     W = (R0 F + R1 F) . (u1 - u0) / 2 + M . a,    a = axial part of R0^t R1 = n sin(angle)
  *
- * for the terms f . p of the ends cancel. This is exact, so the ledger closes to rounding. */
+ * for the terms f . p of the ends cancel. With rows a_k of R0 and b_k of R1, a = -sum a_k x b_k. This is exact, so the
+ * ledger closes to rounding. */
 #include "element/steady.h"
 
 #include "base/columns.h"
@@ -45,14 +46,25 @@ static bool has_some(const struct tl_elements *e, uint32_t body)
     return e->steady_start[body] < e->use_start[body + 1];
 }
 
-/* Work since the last step of what is kept on a body. */
-static double work_on(const tl_steady_table *s, uint32_t body, const tl_pose *now)
+static tl_vec3 row_of(const tl_mat3 *r, int k)
 {
-    const tl_mat3 *r = &s->turn[body];
-    const tl_vec3 f = tl_v3_add(tl_m3_mul(r, s->force[body]), tl_m3_mul(&now->r, s->force[body]));
-    const tl_mat3 d = tl_m3_tproduct(r, &now->r);
-    const tl_vec3 a = tl_v3(d.m[2][1] - d.m[1][2], d.m[0][2] - d.m[2][0], d.m[1][0] - d.m[0][1]);
-    return 0.5 * (tl_v3_dot(f, tl_v3_sub(now->u, s->at[body])) + tl_v3_dot(s->moment[body], a));
+    return tl_v3(r->m[k][0], r->m[k][1], r->m[k][2]);
+}
+
+/* Takes what is kept on a body on to where it is now. Returns the work on the way, J. */
+static double take_on(tl_steady_table *s, uint32_t body, const tl_pose *now)
+{
+    const tl_mat3 *before = &s->turn[body];
+    const tl_vec3 force = tl_m3_mul(&now->r, s->force[body]), f = tl_v3_add(s->acts[body], force);
+    tl_vec3 a = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        a = tl_v3_add(a, tl_v3_cross(row_of(&now->r, k), row_of(before, k)));
+    const double work = 0.5 * (tl_v3_dot(f, tl_v3_sub(now->u, s->at[body])) + tl_v3_dot(s->moment[body], a));
+    s->acts[body] = force;
+    s->turns[body] = tl_m3_mul(&now->r, s->moment[body]);
+    s->at[body] = now->u;
+    s->turn[body] = now->r;
+    return work;
 }
 
 /* Whether some body has gone farther than `way` of its size since its forces were asked for. */
@@ -79,12 +91,8 @@ bool tl_steady_keeps(tl_model *m)
     if (has_gone(m, way))
         return false;
     for (uint32_t body = 0; body < s->table.rows; body++) {
-        const tl_pose *now = &m->bodies.pose[body];
-        if (!has_some(e, body))
-            continue;
-        s->given[body] = work_on(s, body, now);
-        s->at[body] = now->u;
-        s->turn[body] = now->r;
+        if (has_some(e, body))
+            s->given[body] = take_on(s, body, &m->bodies.pose[body]);
     }
     return true;
 }
@@ -100,7 +108,7 @@ void tl_steady_bring(tl_model *m)
             const uint32_t row = e->use[k];
             const tl_vec3 arm = tl_m3_mul(&s->turn[body], tl_columns_get(n->local, row));
             const tl_vec3 f = tl_m3_tmul(&s->from[body], tl_columns_get(n->force, row));
-            tl_columns_put(n->u, row, tl_v3_sub(tl_v3_add(s->at[body], arm), tl_columns_get(n->base, row)));
+            tl_columns_put(n->u, row, tl_v3_sub(tl_v3_add(s->at[body], arm), tl_columns_get(tl_node_bases(n), row)));
             tl_columns_put(n->force, row, tl_m3_mul(&s->turn[body], f));
         }
     }
@@ -123,6 +131,8 @@ void tl_steady_take(tl_model *m)
         s->force[body] = force;
         s->moment[body] = moment;
         s->magnitude[body] = magnitude;
+        s->acts[body] = tl_m3_mul(&now->r, force);
+        s->turns[body] = tl_m3_mul(&now->r, moment);
         s->at[body] = now->u;
         s->turn[body] = s->from[body] = now->r;
         s->odometer[body] = m->bodies.odometer[body];
@@ -147,9 +157,8 @@ bool tl_steady_add(const tl_model *m, uint32_t body, tl_acting *on)
         return false;
     if (!has_some(e, body))
         return true;
-    const tl_mat3 *r = &m->bodies.pose[body].r;
-    on->force = tl_v3_add(on->force, tl_m3_mul(r, s->force[body]));
-    on->moment = tl_v3_add(on->moment, tl_m3_mul(r, s->moment[body]));
+    on->force = tl_v3_add(on->force, s->acts[body]);
+    on->moment = tl_v3_add(on->moment, s->turns[body]);
     on->magnitude += s->magnitude[body];
     return true;
 }

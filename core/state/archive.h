@@ -87,7 +87,7 @@ tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char 
         'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'                                                                    \
     }
 /* Format of the file, and of what the chunks hold: another is refused. */
-#define TL_ARCHIVE_FORMAT 22
+#define TL_ARCHIVE_FORMAT 23
 /* Data has at most so many bytes for one that is stored. So a file can cost no more memory than some multiple of its
  * size. What would be shorter is followed by an empty frame of zstd. */
 #define TL_ARCHIVE_DENSEST 32u

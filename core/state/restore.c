@@ -637,8 +637,10 @@ static bool hold_nodes(tl_node_table *n, const tl_archive *a)
     const bool moved = tl_archive_find(a, "elements.nodes.from[0]"), zones = tl_archive_find(a, "elements.nodes.share");
     const bool faces = tl_archive_find(a, "elements.nodes.outward[0]"), damped = tl_archive_find(a, "elements.nodes.c");
     const bool turned = tl_archive_find(a, "elements.nodes.normal[0]");
-    return (!moved || tl_nodes_hold_from(n)) && (!faces || tl_nodes_hold_normals(n, turned)) &&
-           (!zones || tl_nodes_hold_zones(n)) && (!damped || tl_nodes_hold_damping(n));
+    const bool based = tl_archive_find(a, "elements.nodes.base[0]");
+    return (!based || tl_nodes_hold_base(n)) && (!moved || tl_nodes_hold_from(n)) &&
+           (!faces || tl_nodes_hold_normals(n, turned)) && (!zones || tl_nodes_hold_zones(n)) &&
+           (!damped || tl_nodes_hold_damping(n));
 }
 
 static tl_status read_elements(tl_model *m, const tl_archive *a)

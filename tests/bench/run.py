@@ -255,6 +255,7 @@ def deformable(r):
 def elements(r):
     """Bolts, quiet faces and water; only their lines of text."""
     r.program("bolts")
+    r.script("bolt_memory")
     r.script("quiet", f"n={20 if r.quick else 60}")
     r.script("water", f"n={4 if r.quick else 5}")
     r.script("flow", "10000" if r.quick else "100000")

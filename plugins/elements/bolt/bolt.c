@@ -376,11 +376,6 @@ static tl_vec3 column(const double *const of[3], uint32_t i)
     return tl_v3(of[0][i], of[1][i], of[2][i]);
 }
 
-static tl_vec3 column_of(const double (*of)[CHAIN_ROOM], uint32_t k)
-{
-    return tl_v3(of[0][k], of[1][k], of[2][k]);
-}
-
 static tl_vec3 way_of(const tl_element_batch *b, uint32_t i, uint32_t j)
 {
     return tl_v3(b->rest[0][j] - b->rest[0][i] + (b->u[0][j] - b->u[0][i]),
@@ -739,29 +734,42 @@ static void turn_side(const bolt *t, const crossing *x, const tl_element_batch *
     push(b, from, 1 / x->side_length[s], across);
 }
 
+/* Forces of what the rock bears along the segments, N, on the nodes at their ends: one component. */
+TL_VECTORIZED static void pull_nodes(const double *restrict tension, const double *restrict along, uint32_t count,
+                                     double *restrict force)
+{
+    force[0] = count > 1 ? tension[0] * along[0] : 0;
+#pragma omp simd
+    for (uint32_t k = 1; k < count - 1; k++)
+        force[k] = tension[k] * along[k] - tension[k - 1] * along[k - 1];
+    if (count > 1)
+        force[count - 1] = -tension[count - 2] * along[count - 2];
+}
+
 /* Forces on the nodes: minus the gradient of the energy. Plate and grout of the nodes so far give the tension that the
  * rock bears between two nodes. */
 static void put_forces(const bolt *t, const tl_element_batch *b, uint32_t e)
 {
     const chain *c = &t->c;
-    for (int k = 0; k < 3; k++)
-        memset(&b->force[k][b->start[e]], 0, (b->start[e + 1] - b->start[e]) * sizeof(double));
-    double tension = c->plate;
-    uint32_t next = 0;
-    for (uint32_t k = 0; k + 1 < c->count; k++) {
-        tension += c->grout[k];
-        const tl_vec3 along = column_of(t->along, k);
-        push(b, t->row[k], tension, along);
-        push(b, t->row[k + 1], -tension, along);
-        if (next == t->crossings || t->cross[next].segment != k)
+    double tension[CHAIN_ROOM], force[CHAIN_ROOM], sum = c->plate;
+    for (uint32_t k = 0; k < c->count; k++)
+        tension[k] = sum += c->grout[k];
+    for (int k = 0; k < 3; k++) {
+        if (!t->in_order)
+            memset(&b->force[k][b->start[e]], 0, (b->start[e + 1] - b->start[e]) * sizeof(double));
+        if (c->count == 0)
             continue;
-        const crossing *x = &t->cross[next++];
+        pull_nodes(tension, t->along[k], c->count, force);
+        give(t, force, b->force[k]);
+    }
+    for (uint32_t n = 0; n < t->crossings; n++) {
+        const crossing *x = &t->cross[n];
         const double dowel = x->size > 0 ? x->shear / x->size : 0;
-        push(b, t->row[k], dowel, x->slid);
-        push(b, t->row[k + 1], -dowel, x->slid);
+        push(b, t->row[x->segment], dowel, x->slid);
+        push(b, t->row[x->segment + 1], -dowel, x->slid);
         if (!(x->sum > 0))
             continue;
-        const tl_vec3 couple = tl_v3_scale((tension * x->turn - dowel * x->part) / x->sum, x->slid);
+        const tl_vec3 couple = tl_v3_scale((tension[x->segment] * x->turn - dowel * x->part) / x->sum, x->slid);
         turn_side(t, x, b, 0, couple);
         turn_side(t, x, b, 1, couple);
     }

@@ -1,7 +1,9 @@
 /* chain.c - the displacements of the steel of a bolt: of a chain of springs with limits.
  *
- * First all is taken as elastic. Where a limit is passed, Newton passes with the three-band matrix follow, as a rule
- * one to three. Steel that yields beside grout that slips can make them turn in a circle: then w is found directly.
+ * Newton passes with the three-band matrix find them. What gave in the step before is taken to give on, with no
+ * stiffness at all. So one pass is enough as a rule. More are where springs begin to give or hold again. Steel that
+ * yields beside grout that slips can make the passes turn in a circle, or a piece hang on nothing: then w is found
+ * directly.
  *
  * Let L_k(w) be the tension behind node k with which the nodes up to k are in equilibrium when node k is at w. It rises
  * with w in straight pieces, between its *knots*:
@@ -30,67 +32,13 @@
 #define BALANCED 1e-11
 /* Tolerance: the same, relative to what rounding of w makes with the stiffest part. Test: lua/test_bolt. */
 #define ROUNDED 1e-15
-/* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
- * gives the same forces. */
-#define LEFT 1e-4
+/* Cost only: over a limit, forces from which on a spring is taken to give, as it gave in the step before. */
+#define GIVES (1 - 1e-12)
 
 static inline double within(double x, double limit)
 {
     return larger(-limit, smaller(limit, x));
 }
-
-/* Forces of the grout at the present w, and of the steel. `more`, N, is added to the bond; steel that bears more than
- * `least` bears all. */
-TL_VECTORIZED static void respond_all(chain *c, double more, double least)
-{
-    const uint32_t n = c->count;
-#pragma omp simd
-    for (uint32_t k = 0; k < n; k++) {
-        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
-        const double force = within(trial, c->bears[k] + more);
-        const double left = LEFT * smaller(c->hold[k], c->even[k]);
-        c->grout_trial[k] = trial;
-        c->grout[k] = force;
-        c->grout_tangent[k] = force == trial ? c->hold[k] : left;
-    }
-#pragma omp simd
-    for (uint32_t k = 0; k < n - 1; k++) {
-        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
-        const double force = within(trial, c->limit[k] > least ? INFINITY : c->limit[k]);
-        const double left = LEFT * c->even[k];
-        c->tension_trial[k] = trial;
-        c->tension[k] = force;
-        c->tension_tangent[k] = force == trial ? c->stiff[k] : left;
-    }
-}
-
-/* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
-static void respond(chain *c, bool elastic)
-{
-    respond_all(c, elastic ? INFINITY : 0, elastic ? 0 : INFINITY);
-    c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
-    c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
-    c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * smaller(c->plate_stiff, c->even[0]);
-}
-
-/* Grout beyond its bond falls to the residual; whether some has. */
-static bool wear(chain *c)
-{
-    bool wears = false;
-    for (uint32_t k = 0; k < c->count; k++)
-        if (c->worn[k] == 0 && fabs(c->grout_trial[k]) > c->bond[k]) {
-            c->worn[k] = 1;
-            c->bears[k] = c->residual[k];
-            c->grout[k] = within(c->grout_trial[k], c->residual[k]);
-            wears = wears || c->residual[k] < c->bond[k];
-        }
-    return wears;
-}
-
-/* Largest sizes along a chain: of the unbalance, forces (N), stiffnesses (N/m) and displacements (m). */
-typedef struct sizes {
-    double off, force, stiff, moved;
-} sizes;
 
 static inline double size(double x)
 {
@@ -105,43 +53,91 @@ static inline double size(double x)
 #define LARGEST(...) PRAGMA(omp simd reduction(max : __VA_ARGS__))
 #endif
 
-/* Fills `off` but for the plate and the pull at node 0. */
-TL_VECTORIZED static sizes balance(chain *c)
+/* Forces of the grout at the present w, and of the steel. Gives the largest one. */
+TL_VECTORIZED static double respond_all(chain *c)
+{
+    const uint32_t n = c->count;
+    double most = 0;
+    LARGEST(most)
+    for (uint32_t k = 0; k < n; k++) {
+        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
+        const double force = within(trial, c->bears[k]);
+        c->grout_trial[k] = trial;
+        c->grout[k] = force;
+        c->grout_tangent[k] = size(trial) < GIVES * c->bears[k] ? c->hold[k] : 0;
+        most = larger(most, size(force));
+    }
+    LARGEST(most)
+    for (uint32_t k = 0; k < n - 1; k++) {
+        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
+        const double force = within(trial, c->limit[k]);
+        c->tension_trial[k] = trial;
+        c->tension[k] = force;
+        c->tension_tangent[k] = size(trial) < GIVES * c->limit[k] ? c->stiff[k] : 0;
+        most = larger(most, size(force));
+    }
+    return most;
+}
+
+/* Fills `off` but for the plate and the pull at node 0. Gives its largest size. */
+TL_VECTORIZED static double balance(chain *c)
 {
     const uint32_t last = c->count - 1;
-    double off = 0, force = 0, stiff = 0, moved = 0;
+    double most = 0;
     c->off[0] = (last > 0 ? c->tension[0] : 0) + (-c->plate - c->pull) - c->grout[0];
-    LARGEST(force, stiff)
-    for (uint32_t k = 0; k < last; k++) {
-        force = larger(force, size(c->tension[k]));
-        stiff = larger(stiff, c->stiff[k]);
-    }
-#pragma omp simd
-    for (uint32_t k = 1; k < last; k++)
+    LARGEST(most)
+    for (uint32_t k = 1; k < last; k++) {
         c->off[k] = c->tension[k] - c->tension[k - 1] - c->grout[k];
+        most = larger(most, size(c->off[k]));
+    }
     if (last > 0)
         c->off[last] = -c->tension[last - 1] - c->grout[last];
-    LARGEST(off, force, stiff, moved)
-    for (uint32_t k = 0; k <= last; k++) {
-        off = larger(off, size(c->off[k]));
-        force = larger(force, size(c->grout[k]));
+    return larger(most, larger(size(c->off[0]), size(c->off[last])));
+}
+
+/* Unbalance that rounding of displacements explains, N. */
+TL_VECTORIZED static double rounding_of(const chain *c)
+{
+    double stiff = c->plate_stiff, moved = size(c->seat);
+    LARGEST(stiff, moved)
+    for (uint32_t k = 0; k < c->count; k++) {
         stiff = larger(stiff, c->hold[k]);
         moved = larger(moved, larger(larger(size(c->w[k]), size(c->rock[k])), size(c->slip[k])));
     }
-    return (sizes){off, force, stiff, moved};
+    LARGEST(stiff)
+    for (uint32_t k = 0; k < c->count - 1; k++)
+        stiff = larger(stiff, c->stiff[k]);
+    return ROUNDED * stiff * moved;
 }
 
-/* Whether the steel is in equilibrium; fills `off`. */
-static bool is_balanced(chain *c)
+/* Forces at the present w, and the unbalance. Whether the steel is in equilibrium. */
+static bool respond(chain *c)
 {
-    const sizes of = balance(c);
-    const double most = larger(fabs(c->pull) + c->plate, of.force), stiffest = larger(c->plate_stiff, of.stiff);
-    return of.off <= BALANCED * most + ROUNDED * stiffest * larger(fabs(c->seat), of.moved);
+    c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
+    c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
+    c->plate_tangent = c->plate_trial >= 0 && c->plate_trial < GIVES * c->plate_limit ? c->plate_stiff : 0;
+    const double most = respond_all(c);
+    c->enough = BALANCED * larger(fabs(c->pull) + c->plate, most) + c->rounding;
+    return balance(c) <= c->enough;
+}
+
+/* Grout beyond its bond falls to the residual; whether some has. */
+static bool wear(chain *c)
+{
+    bool wears = false;
+    for (uint32_t k = 0; k < c->count; k++)
+        if (c->worn[k] == 0 && fabs(c->grout_trial[k]) > c->bond[k]) {
+            c->worn[k] = 1;
+            c->bears[k] = c->residual[k];
+            wears = wears || c->residual[k] < c->bond[k];
+        }
+    return wears;
 }
 
 /* What is left of the nodes on one side of a node when they are eliminated. */
 typedef struct side_left {
     double before, alone, part, carried; /* N/m of the segment to it; shares of that and of the step; N / (N/m) */
+    double loose;                        /* N, largest load of a piece that nothing holds */
 } side_left;
 
 /* Eliminates node k, whose next segment has the stiffness `after`: its step is step[k] + over[k] times that of the next
@@ -152,24 +148,26 @@ static inline void eliminate(const chain *c, uint32_t k, double own, double afte
     own += r->before * r->alone;
     const double pivot = own + after, inverse = pivot > 0 ? 1 / pivot : 0;
     r->carried = c->off[k] + r->part * r->carried;
+    r->loose = pivot > 0 ? r->loose : larger(r->loose, size(r->carried));
     step[k] = r->carried * inverse;
     r->part = over[k] = after * inverse;
     r->alone = own * inverse;
     r->before = after;
 }
 
-/* The step of w of a Newton pass: elimination in the three bands from both ends to the middle, and back. */
-static void find_step(const chain *c, double *step)
+/* The step of w of a Newton pass: elimination in the three bands from both ends to the middle, and back. false: a piece
+ * that bears a load hangs on nothing. */
+static bool find_step(const chain *c, double *step)
 {
     double over[TL_ELEMENT_NODES];
     const uint32_t n = c->count, middle = n / 2;
-    const double *grout = c->grout_tangent, *steel = c->tension_tangent;
-    side_left left = {0, 1, 0, 0}, right = {0, 1, 0, 0};
+    const double *grout = c->grout_tangent, *segment = c->tension_tangent;
+    side_left left = {0, 1, 0, 0, 0}, right = {0, 1, 0, 0, 0};
     for (uint32_t k = 0; k < middle; k++) {
         const uint32_t j = n - 1 - k;
-        eliminate(c, k, grout[k] + (k == 0 ? c->plate_tangent : 0), steel[k], &left, step, over);
+        eliminate(c, k, grout[k] + (k == 0 ? c->plate_tangent : 0), segment[k], &left, step, over);
         if (j > middle)
-            eliminate(c, j, grout[j], steel[j - 1], &right, step, over);
+            eliminate(c, j, grout[j], segment[j - 1], &right, step, over);
     }
     const double own = grout[middle] + (middle == 0 ? c->plate_tangent : 0);
     const double pivot = own + left.before * left.alone + right.before * right.alone;
@@ -182,46 +180,48 @@ static void find_step(const chain *c, double *step)
         if (j < n)
             step[j] = after = step[j] + over[j] * after;
     }
+    return larger(left.loose, right.loose) <= c->enough && (pivot > 0 || size(carried) <= c->enough);
 }
 
-/* The unbalance along a step, J: it falls to 0 at the best part of it. */
-static double along(const chain *c, const double *step)
+/* An unbalance along a step, J: it falls to 0 at the best part of it. */
+static double along(const chain *c, const double *off, const double *step)
 {
     double sum = 0;
     for (uint32_t k = 0; k < c->count; k++)
-        sum += c->off[k] * step[k];
+        sum += off[k] * step[k];
     return sum;
 }
 
-/* Goes a part of a step on from `from`. Gives the unbalance along the step. */
-static double go(chain *c, const double *from, const double *step, double part, bool *balanced)
+/* Goes a part of a step on from `from`. Whether the steel is in equilibrium there. */
+static bool go(chain *c, const double *from, const double *step, double part)
 {
     for (uint32_t k = 0; k < c->count; k++)
         c->w[k] = from[k] + part * step[k];
-    respond(c, false);
-    *balanced = is_balanced(c);
-    return along(c, step);
+    return respond(c);
 }
 
-/* A Newton pass from where forces and unbalance are known. Where it goes too far, beyond where the energy along the
- * step is least, it goes back. */
-static bool advance(chain *c)
+/* A Newton pass from where forces and unbalance are known, by a step. Where it goes too far, beyond where the energy
+ * along the step is least, it goes back. Whether the steel is in equilibrium. */
+static bool advance(chain *c, const double *step)
 {
-    double step[TL_ELEMENT_NODES], from[TL_ELEMENT_NODES], least = 0, most = 1;
-    bool balanced;
-    find_step(c, step);
+    double from[TL_ELEMENT_NODES], off[TL_ELEMENT_NODES], least = 0, most = 1;
     memcpy(from, c->w, c->count * sizeof *from);
-    const double begin = along(c, step);
-    double low = begin, high = go(c, from, step, 1, &balanced);
-    for (int k = 0; k < SEARCH && high < -OVERSHOT * begin && !balanced; k++) {
+    memcpy(off, c->off, c->count * sizeof *off);
+    if (go(c, from, step, 1))
+        return true;
+    const double begin = along(c, off, step);
+    double low = begin, high = along(c, c->off, step);
+    for (int k = 0; k < SEARCH && high < -OVERSHOT * begin; k++) {
         const double part = k % 3 == 2 ? 0.5 * (least + most) : least + (most - least) * low / (low - high);
-        const double at = go(c, from, step, part, &balanced);
+        if (go(c, from, step, part))
+            return true;
+        const double at = along(c, c->off, step);
         if (fabs(at) <= OVERSHOT * begin)
             break;
         *(at > 0 ? &least : &most) = part;
         *(at > 0 ? &low : &high) = at;
     }
-    return balanced;
+    return false;
 }
 
 /* ---------------------------------------------------------------- direct ----------------- */
@@ -351,12 +351,16 @@ static bool find_directly(chain *c)
 
 /* ---------------------------------------------------------------- both ------------------- */
 
-/* Newton passes until the steel is in equilibrium; false: it is not after all of them. */
+/* Newton passes until the steel is in equilibrium; false: it is not after all of them, or a piece hangs on nothing. */
 static bool pass(chain *c)
 {
-    bool balanced = is_balanced(c);
-    for (int k = 0; k < PASSES && !balanced; k++)
-        balanced = advance(c);
+    double step[TL_ELEMENT_NODES];
+    bool balanced = respond(c);
+    for (int k = 0; k < PASSES && !balanced; k++) {
+        if (!find_step(c, step))
+            return false;
+        balanced = advance(c, step);
+    }
     return balanced;
 }
 
@@ -367,21 +371,13 @@ static bool settle(chain *c)
         return true;
     if (!find_directly(c))
         return false;
-    respond(c, false);
     pass(c); /* against rounding */
     return true;
 }
 
 bool chain_solve(chain *c)
 {
-    respond(c, true);
-    if (!is_balanced(c)) {
-        double step[TL_ELEMENT_NODES];
-        find_step(c, step);
-        for (uint32_t k = 0; k < c->count; k++)
-            c->w[k] += step[k];
-    }
-    respond(c, false);
+    c->rounding = rounding_of(c);
     do { /* each time grout wears that was not worn */
         if (!settle(c))
             return false;

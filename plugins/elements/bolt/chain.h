@@ -26,7 +26,8 @@ typedef struct chain {
     double grout[CHAIN_ROOM], grout_trial[CHAIN_ROOM], grout_tangent[CHAIN_ROOM];
     double tension[CHAIN_ROOM], tension_trial[CHAIN_ROOM], tension_tangent[CHAIN_ROOM];
     double plate, plate_trial, plate_tangent;
-    double off[CHAIN_ROOM]; /* N, unbalance of the steel */
+    double off[CHAIN_ROOM];  /* N, unbalance of the steel */
+    double rounding, enough; /* N, of it that rounding of displacements explains, and that is equilibrium */
 } chain;
 
 /* As fmax and fmin, which compilers do not put inline for the sake of NaN. */

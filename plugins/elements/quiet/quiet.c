@@ -47,7 +47,7 @@ static tl_status place_face(const tl_element_host *host, const tl_element_face *
     tl_element_node nodes[POINTS];
     half_space_points(f, at);
     for (int i = 0; i < POINTS; i++)
-        nodes[i] = (tl_element_node){f->block, at[i], f->normal, row[2] / POINTS};
+        nodes[i] = (tl_element_node){f->block, at[i], {0, 0, 0}, row[2] / POINTS}; /* the element has the normal */
     const double state[] = {f->normal.x, f->normal.y, f->normal.z, f->face + 1, row[3], row[4]};
     return host->add(
         host, &(tl_new_element){.size = sizeof(tl_new_element), .nodes = nodes, .count = POINTS, .state = state});
@@ -99,9 +99,9 @@ static half_space cut_off(const quiet_params *p, double height, double density, 
 /* Cost only: nodes that act together, of elements with the same rock behind them. */
 #define TILE 96
 
-/* Normals of the nodes of a tile, and what they do in a step, J: `work` is that of the blocks on them. */
+/* Normals of the nodes of a tile, and what they do in a step, J. */
 typedef struct tile {
-    double normal[3][TILE], stored[TILE], lost[TILE], work[3][TILE];
+    double normal[3][TILE], stored[TILE], lost[TILE];
 } tile;
 
 /* Moves the dashpots of nodes [first, first + count) along, and puts the forces on the block. */
@@ -124,11 +124,8 @@ TL_VECTORIZED static void act(const half_space *behind, const tl_element_batch *
         const tl_vec3 now = half_space_follow(&h, s, at, way, in, n);
         const tl_vec3 d = tl_v3_sub(at, now), out = tl_v3_sub(tl_v3_sub(now, s), in);
         const tl_vec3 f = tl_v3_scale(area[i], half_space_parts(h.k, d, n));
-        t->stored[i] = 0.5 * area[i] * half_space_square(h.k, d, n);
+        t->stored[i] = 0.5 * tl_v3_dot(f, d);
         t->lost[i] = area[i] * half_space_square(h.z, out, n);
-        t->work[0][i] = 0.5 * (force[0][i] + -f.x) * way.x;
-        t->work[1][i] = 0.5 * (force[1][i] + -f.y) * way.y;
-        t->work[2][i] = 0.5 * (force[2][i] + -f.z) * way.z;
         force[0][i] = -f.x;
         force[1][i] = -f.y;
         force[2][i] = -f.z;
@@ -138,23 +135,42 @@ TL_VECTORIZED static void act(const half_space *behind, const tl_element_batch *
     }
 }
 
-/* Puts what the nodes of element e, from lane `first` of the tile on, do in a step into its books. `per`: 1/s. */
+/* Half of the work of the blocks on the nodes of element e in a step, with the forces as they are. */
+static double half_work(const tl_element_batch *b, uint32_t e)
+{
+    double sum = 0;
+    for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++)
+        for (int k = 0; k < 3; k++)
+            sum -= 0.5 * b->force[k][i] * b->du[k][i];
+    return sum;
+}
+
+/* Whether a part of the blocks of elements [begin, end) has gone, and with it what the springs there held. */
+TL_VECTORIZED static bool is_gone(const tl_element_batch *b, uint32_t begin, uint32_t end)
+{
+    const double *restrict area = b->weight;
+    double gone = 0;
+#pragma omp simd reduction(+ : gone)
+    for (uint32_t i = b->start[begin]; i < b->start[end]; i++)
+        gone += area[i] == 0 ? 1 : 0;
+    return gone > 0;
+}
+
+/* Puts what the nodes of element e, from lane `first` of the tile on, do in a step into its books. `per`: 1/s; `gone`:
+ * where a part of the block may have gone. */
 static void book(const half_space *h, const tl_element_batch *b, uint32_t e, tl_vec3 in, double per, const tile *t,
-                 uint32_t first)
+                 uint32_t first, bool gone)
 {
     const tl_vec3 n = {t->normal[0][first], t->normal[1][first], t->normal[2][first]};
-    double stored = 0, lost = 0, work = 0, area = 0;
-    bool gone = false; /* a part of the block, and with it what the springs there hold */
+    double stored = 0, lost = 0, area = 0;
     for (uint32_t k = b->start[e], i = first; k < b->start[e + 1]; k++, i++) {
-        gone = gone || b->weight[k] == 0;
         stored += t->stored[i];
         lost += t->lost[i];
         area += b->weight[k];
-        for (int c = 0; c < 3; c++)
-            work -= t->work[c][i];
     }
     b->given[e] = per * area * half_space_square(h->z, in, n);
-    b->lost[e] = gone ? b->stored[e] + work + b->given[e] - stored : per * lost;
+    b->lost[e] =
+        gone && is_gone(b, e, e + 1) ? b->stored[e] + b->lost[e] + half_work(b, e) + b->given[e] - stored : per * lost;
     b->stored[e] = stored;
 }
 
@@ -181,13 +197,20 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
         end = alike_until(b, begin);
         const uint32_t first = b->start[begin];
         const half_space h = cut_off(&kind->given, of[QUIET_HEIGHT][begin], of[QUIET_DENSITY][begin], b->dt);
-        for (uint32_t e = begin; e < end; e++)
-            for (uint32_t i = b->start[e] - first; i < b->start[e + 1] - first; i++)
-                for (int k = 0; k < 3; k++)
-                    t.normal[k][i] = of[QUIET_NORMAL_X + k][e];
+        const bool gone = is_gone(b, begin, end);
+        for (uint32_t e = begin; e < end; e++) {
+            if (gone && is_gone(b, e, e + 1))
+                b->lost[e] = half_work(b, e); /* the half that is known before forces are found */
+            const double x = of[QUIET_NORMAL_X][e], y = of[QUIET_NORMAL_Y][e], z = of[QUIET_NORMAL_Z][e];
+            for (uint32_t i = b->start[e] - first; i < b->start[e + 1] - first; i++) {
+                t.normal[0][i] = x;
+                t.normal[1][i] = y;
+                t.normal[2][i] = z;
+            }
+        }
         act(&h, b, first, b->start[end] - first, in, &t);
         for (uint32_t e = begin; e < end; e++)
-            book(&h, b, e, in, per, &t, b->start[e] - first);
+            book(&h, b, e, in, per, &t, b->start[e] - first, gone);
     }
     return TL_OK;
 }
