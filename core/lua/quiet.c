@@ -28,6 +28,8 @@
 #define INCOMING "incoming"
 /* Tolerance: least component of the normal of a face along an axis for the face to look along it. */
 #define ALONG 0.99995
+/* Tolerance: sine of the dip of a bed that counts as level at a free field. Test: lua/test_free_field. */
+#define LEVEL 1e-3
 
 /* ---------------------------------------------------------------- blocks ----------------- */
 
@@ -319,6 +321,15 @@ static void plan_incoming(lua_State *L, tl_model *model, tl_lua_quiet *plan)
     const bool input = tl_lua_option(L, plan->table, "input") != LUA_TNIL;
     lua_pop(L, 1);
     plan->kind = input ? INCOMING : NULL;
+    static const char *const behind[] = {"joint", "p_velocity", "s_velocity", "density"};
+    for (size_t k = 0; k < 4; k++) {
+        if (tl_lua_option(L, plan->table, behind[k]) != LUA_TNIL)
+            tl_lua_fail(L,
+                        "boundary: block %d is deformable, so what was cut off is rock as its own: leave out %s at its "
+                        "quiet face",
+                        (int)plan->block[0], behind[k]);
+        lua_pop(L, 1);
+    }
     if (!input)
         return;
     lua_newtable(L);
@@ -386,6 +397,57 @@ static unsigned *plan_held(lua_State *L, tl_model *model, const tl_lua_sides *si
     return stays;
 }
 
+/* The normal of the face that has the edge between two corners from the other side, or NULL. */
+static const tl_vec3 *normal_beside(const tl_block_mesh *mesh, uint32_t from, uint32_t to)
+{
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const uint32_t *corner = mesh->loops + mesh->start[f], count = mesh->start[f + 1] - mesh->start[f];
+        for (uint32_t k = 0; k < count; k++)
+            if (corner[k] == to && corner[(k + 1) % count] == from)
+                return &mesh->normals[f];
+    }
+    return NULL;
+}
+
+/* Dip of the top or foot of a block that begins at a level edge of its side, in degrees; 0: both are level. Edges above
+ * `ground` are left out. */
+static double dip_of(const tl_block_mesh *mesh, uint32_t side, double ground)
+{
+    const uint32_t *corner = mesh->loops + mesh->start[side], count = mesh->start[side + 1] - mesh->start[side];
+    for (uint32_t k = 0; k < count; k++) {
+        const uint32_t from = corner[k], to = corner[(k + 1) % count];
+        const tl_vec3 edge = tl_v3_sub(mesh->vertices[to], mesh->vertices[from]);
+        const tl_vec3 *n = normal_beside(mesh, from, to);
+        const bool is_level = edge.z * edge.z <= LEVEL * LEVEL * tl_v3_norm2(edge);
+        if (n && is_level && mesh->vertices[from].z <= ground && n->x * n->x + n->y * n->y > LEVEL * LEVEL)
+            return tl_atan2(sqrt(n->x * n->x + n->y * n->y), fabs(n->z)) * (180 / TL_PI);
+    }
+    return 0;
+}
+
+/* Refuses beds that dip from the side into the model, for those of the column beside are level. The ground may slope:
+ * that is what lies above the middle of the highest face. */
+static void look_at_beds(lua_State *L, tl_model *model, const tl_lua_quiet *plan)
+{
+    double ground = -INFINITY;
+    for (size_t i = 0; i < plan->face_count; i++)
+        ground = fmax(ground, plan->faces[i].centroid.z);
+    for (size_t i = 0; i < plan->face_count; i++) {
+        tl_block_mesh mesh;
+        tl_lua_ok(L, model, tl_block_mesh_get(model, plan->block[i], &mesh));
+        const double dip = dip_of(&mesh, plan->faces[i].face, ground);
+        tl_block_mesh_free(&mesh);
+        char degrees[32];
+        tl_text_print(degrees, sizeof degrees, "%.3g", dip);
+        if (dip > 0)
+            tl_lua_fail(
+                L,
+                "boundary: the top or the foot of block %d dips by %s degrees from the side into the model, and "
+                "the beds of the free field beside are level: let beds be level at the side, or make it quiet",
+                (int)plan->block[i], degrees);
+    }
+}
+
 /* The quiet base of the call, or NULL. */
 static const tl_lua_quiet *base_of(const tl_lua_sides *sides, const tl_lua_quiet *quiet, size_t quiets)
 {
@@ -422,6 +484,7 @@ static void plan_free_field(lua_State *L, tl_model *model, const tl_lua_sides *s
     tl_lua_set_number(L, "alpha", alpha);
     tl_lua_set_number(L, "beta", beta);
     end_plan(L, model, plan);
+    look_at_beds(L, model, plan);
 }
 
 const tl_lua_selection *tl_lua_free_fields(lua_State *L, tl_model *model)

@@ -222,5 +222,12 @@ check.near(curve.dowel[#curve.dowel], 1.2e5, 1)
 local dowel, axial = 1.2e5 * math.cos(math.rad(30)), 2.4e5 * math.sin(math.rad(30))
 check.holds(math.max(table.unpack(curve.along)) > dowel + axial, "the axial force helps, more as the bolt turns")
 check.near(curve.along[#curve.along], dowel, 1e-4) -- the steel has broken
+curve = talus.bolt_test { length = 2, pull = 0.05, yield = 1e9, grout_strength = 1e5, grouted_from = 0.8, grouted_to = 0.9 }
+check.near(curve.force[#curve.force] / (0.1 * 2 * 1e5), 1, 1e-6) -- an anchor has the bond of what is grouted
+for key, value in pairs { from = { 0, 0, 0 }, to = { 1, 0, 0 }, plate_stiffness = 1e7, plate_strength = 1e5, pretension = 1e5, angle = 30 } do
+    check.raises(function() talus.bolt_test { length = 1, pull = 0.1, [key] = value } end, "leave out " .. key)
+end
+check.raises(function() talus.bolt_test { length = 1, pull = 0.1, steps = 1.5 } end, "steps = 1.5 must be a whole number")
+check.raises(function() talus.bolt_test { length = 1, pull = 0.1, grouted_to = 2 } end, "grouted_to = 2 is outside [0, 1]")
 check.raises(function() talus.bolt_test { length = 1 } end, "give pull or shear")
 check.raises(function() talus.bolt_test { length = 1, pull = 0.1, yeild = 1 } end, "yield")

@@ -144,6 +144,10 @@ refused({ zmin = { quiet = true }, xmin = { free_field = true, quiet = true } },
 refused({ zmin = "fixed", xmin = { free_field = true, velocity = { 0, 0, 0 } } }, "give it no velocity")
 refused({ zmin = { quiet = true }, xmin = { free_field = true, joint = "J9" } }, "joint 'J9' has no law")
 refused({ zmin = { quiet = true }, xmin = { free_field = true, p_velocity = 9 } }, "both p_velocity and s_velocity")
+refused({ zmin = { quiet = true }, xmin = { free_field = true, p_velocity = 9, s_velocity = 9.5 } },
+    "shear waves of s_velocity = 9.5 m/s are faster than pressure waves of p_velocity = 9 m/s")
+refused({ zmin = { quiet = true, p_velocity = 9, s_velocity = 90 }, xmin = "free_field" },
+    "shear waves of s_velocity = 90 m/s are faster")
 refused({ zmin = { quiet = true }, xmin = "field" }, "xmin must be \"roller\", \"fixed\", \"free_field\" or a table")
 refused({ zmin = { quiet = true }, xmin = { free_field = true, input = { wave, 0, 0 } } }, "go with quiet = true")
 model:blocks { containing = { 0.5, 0.5, 3.5 } }:fix { x = true, y = true, z = true, rotation = true }
@@ -168,6 +172,27 @@ model:generate("joint", { joint = "ground", dip = 20, dip_direction = 0, origin 
 model:blocks { above = { dip = 20, dip_direction = 0, origin = { 1, 1, 2 } } }:delete()
 model:joint("*", "elastic", { kn = 1e10, ks = 4e9 })
 refused({ zmin = { quiet = true }, xmin = "free_field" }, "corners between z = 1 and 2.36397 m, so its top or its foot slopes")
+for _, axis in ipairs { 1, 2 } do -- beds that dip from the side into the model, by so many degrees
+    for _, dip in ipairs { 0.04, 0.1, 20 } do
+        model = talus.model {}
+        model:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 4 }, density = 2500 })
+        model:generate("joint", { joint = "bed", dip = dip, dip_direction = axis == 1 and 90 or 0, origin = { 2, 2, 2 } })
+        model:joint("*", "elastic", { kn = 1e10, ks = 4e9 })
+        local o = { zmin = { quiet = true }, [axis == 1 and "xmin" or "ymax"] = "free_field" }
+        if dip < 0.05 then
+            model:boundary(o)
+        else
+            refused(o, ("dips by %g degrees from the side into the model"):format(dip))
+        end
+    end
+end
+model = talus.model {} -- ground that falls from the side
+model:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 4 }, density = 2500 })
+model:generate("joint", { joint = "bed", dip = 0, dip_direction = 0, origin = { 2, 2, 1 } })
+model:generate("joint", { joint = "ground", dip = 20, dip_direction = 90, origin = { 2, 2, 3 } })
+model:blocks { above = { dip = 20, dip_direction = 90, origin = { 2, 2, 3 } } }:delete()
+model:joint("*", "elastic", { kn = 1e10, ks = 4e9 })
+model:boundary { zmin = { quiet = true }, xmin = "free_field", xmax = "free_field" }
 model = talus.model {} -- a side that leans by 0.1 degrees
 model:generate("polyhedron", { density = 2500, vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 },
     { 1.7e-3, 0, 1 }, { 1, 0, 1 }, { 1, 1, 1 }, { 1.7e-3, 1, 1 } } })

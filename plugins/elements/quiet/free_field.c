@@ -50,6 +50,9 @@ static tl_status create(const void *given, void **self, tl_report *report)
     if (base_joint != !isnan(p->base_ks) || base_rock != !isnan(p->base_s_velocity) || (base_joint && base_rock))
         return tl_refuse(report, "a quiet base has either base_kn and base_ks, or base_p_velocity and base_s_velocity");
     const char *const input[] = {p->input_x, p->input_y, p->input_z};
+    status = half_space_order(p->base_p_velocity, p->base_s_velocity, report);
+    if (status != TL_OK)
+        return status;
     status = half_space_create(input, sizeof(side_kind), self, report);
     side_kind *k = *self;
     if (k) {

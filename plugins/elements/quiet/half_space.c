@@ -68,9 +68,19 @@ tl_status half_space_create(const char *const input[3], size_t size, void **self
 tl_status half_space_check(double kn, double ks, double p_velocity, double s_velocity, tl_report *report)
 {
     const bool joint = !isnan(kn) && !isnan(ks), rock = !isnan(p_velocity) && !isnan(s_velocity);
-    return joint != rock ? TL_OK
-                         : tl_refuse(report, "give either kn and ks of the joints, or p_velocity and s_velocity of the "
-                                             "rock");
+    if (joint == rock)
+        return tl_refuse(report, "give either kn and ks of the joints, or p_velocity and s_velocity of the rock");
+    return half_space_order(p_velocity, s_velocity, report);
+}
+
+tl_status half_space_order(double p_velocity, double s_velocity, tl_report *report)
+{
+    return !(s_velocity > p_velocity)
+               ? TL_OK
+               : tl_refuse(report,
+                           "shear waves of s_velocity = %g m/s are faster than pressure waves of p_velocity = %g m/s: "
+                           "in no rock they are, so look whether the two are exchanged",
+                           s_velocity, p_velocity);
 }
 
 /* Displacement of the wave at a time, m. Velocities that are quadratic between samples have it exactly. */

@@ -23,8 +23,10 @@ size_t half_space_numbers(const char *text, double *to);
 void half_space_destroy(void *self);
 /* Makes one of `size` bytes, 0 behind the waves; on failure `*self` is NULL. */
 tl_status half_space_create(const char *const input[3], size_t size, void **self, tl_report *report);
-/* Refuses what has not either kn and ks, or both velocities; NaN is left out. */
+/* Refuses what has not either kn and ks, or both velocities in their order; NaN is left out. */
 tl_status half_space_check(double kn, double ks, double p_velocity, double s_velocity, tl_report *report);
+/* Refuses shear waves that are faster than pressure waves; NaN is left out. */
+tl_status half_space_order(double p_velocity, double s_velocity, tl_report *report);
 
 /* How far the waves move in a step that ends at `time`, m. */
 tl_vec3 half_space_came(const wave w[3], double time, double dt);

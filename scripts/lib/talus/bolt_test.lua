@@ -9,6 +9,9 @@ local arguments = require "talus.arguments"
 local fail = arguments.fail
 local WHERE = "bolt_test"
 local OWN = { angle = true, length = true, pull = true, shear = true, steps = true }
+-- What the test itself sets, of either kind and of a pull.
+local SET = { "from", "to" }
+local SET_BY_PULL = { "from", "to", "plate_stiffness", "plate_strength", "pretension", "angle" }
 -- m, of the collar before the mouth, and N/m, of what draws it.
 local COLLAR, STIFF = 0.1, 1e12
 local DT = 1e-3
@@ -43,7 +46,9 @@ end
 
 local function pull(given, bolt, length, steps)
     bolt.plate_stiffness, bolt.plate_strength, bolt.pretension = STIFF, STIFF, 0
-    bolt.grouted_from = COLLAR / (COLLAR + length)
+    for key, default in pairs { grouted_from = 0, grouted_to = 1 } do -- parts of the length behind the collar
+        bolt[key] = (COLLAR + arguments.number(WHERE, given, key, default, 0, 1) * length) / (COLLAR + length)
+    end
     local model, element = build({ -COLLAR, 0, length }, bolt, { given.pull / (steps * DT), 0, 0 })
     local curve = { displacement = { 0 }, force = { 0 } }
     model:cycle(1)
@@ -82,7 +87,16 @@ local function run(given)
         fail("%s: give pull or shear, m: how far the mouth is drawn, or the joint slides", WHERE)
     end
     local length = arguments.number(WHERE, given, "length", nil, 0.01, 1000)
-    local steps = math.floor(arguments.number(WHERE, given, "steps", 200, 1, 1e6))
+    local steps = arguments.number(WHERE, given, "steps", 200, 1, 1e6)
+    if steps % 1 ~= 0 then
+        fail("%s: steps = %s must be a whole number", WHERE, arguments.decimal("%.10g", steps))
+    end
+    for _, key in ipairs(given.pull and SET_BY_PULL or SET) do
+        if given[key] ~= nil then
+            fail("%s: leave out %s, which has no part in this test: a bolt lies along x, and one that is pulled has no joint "
+                .. "and no plate", WHERE, key)
+        end
+    end
     arguments.number(WHERE, given, given.pull and "pull" or "shear", nil, 1e-9, 100)
     local bolt = {}
     for key, value in pairs(given) do
