@@ -410,11 +410,13 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
      .keys = plot_keys},
     {.name = "poles",
-     .usage = "poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles(\"FILE\")",
+     .usage = "poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles(\"FILE\", {declination = 3.5})",
      .doc = "Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, "
             "and weight "
             "if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; "
-            "with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing.",
+            "with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing. "
+            "declination, degrees in [-180, 180], default 0, is that of magnetic from true north, east positive: it is "
+            "added to all dip directions. Tables that are written are from true north.",
      .title = "Methods",
      .verbs = poles_methods},
     {.name = "realisations",

@@ -1686,12 +1686,12 @@ function talus.convert(options) end
 ---@param options talus.PlotOptions
 function talus.plot(options) end
 
---- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing.
+--- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Cells are separated by commas, semicolons or tabs; with semicolons or tabs numbers may have decimal commas. Poles are axes, and their order means nothing. declination, degrees in [-180, 180], default 0, is that of magnetic from true north, east positive: it is added to all dip directions. Tables that are written are from true north.
 ---
----     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE")
+---     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE", {declination = 3.5})
 ---@param options? table
 ---@return table
----@overload fun(name: string): table
+---@overload fun(name: string, options?: table): table
 function talus.poles(options) end
 
 ---@class (exact) talus.RealisationsOptions

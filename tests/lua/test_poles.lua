@@ -121,7 +121,7 @@ do
     for _, case in ipairs {
         { "dip,dip_direction\n30,120\n95,10\n", "line 3, column 'dip': 95 is outside [0, 90]" },
         { "dip,dip_direction\n30,1o0\n", "line 2, column 'dip_direction': '1o0' is no number" },
-        { "dip,dip_direction\n30\n", "line 2 has 1 cells, the line of names has 2" },
+        { "dip,dip_direction\n30\n", "line 2 has 1 cell, the line of names has 2" },
         { "dip,dip_direction\n30,\n", "line 2, column 'dip_direction': the cell is empty" },
         { "dip,azimuth\n30,100\n", "line 1 does not name a column 'dip_direction', but has 'dip,azimuth': the first" },
         { "dip;dip_direction\n30,5;100\n31.5;110\n", "line 3, column 'dip': '31.5': numbers are to have decimal points or" },
@@ -145,6 +145,23 @@ do
         check.raises(function() model:generate("jointset", { joint = "J", poles = path, spacing = 1 }) end, case[2])
         check.raises(function() model:generate("dfn", { joint = "J", poles = path, number = 1, size_mean = 1 }) end, case[2])
     end
+end
+
+-- Dip directions by a compass become those from true north, east positive; what is written is from true north.
+do
+    local read = { { 30, 5, 2 }, { 40, 355, 1 }, { 50, 120, 1 } }
+    local p = talus.poles(read, { declination = 10.5 })
+    check.near(p:list()[1], { 30, 15.5 }, 1e-12)
+    check.near(p:list()[2], { 40, 5.5 }, 1e-12)
+    check.near(p:list()[3], { 50, 130.5 }, 1e-12)
+    check.near(talus.poles(read, { declination = -10.5 }):list()[1], { 30, 354.5 }, 1e-12)
+    local mean, turned = talus.poles(read):mean(), p:mean()
+    check.near(turned.dip, mean.dip, 1e-9)
+    check.near((turned.dip_direction - mean.dip_direction) % 360, 10.5, 1e-9)
+    check.near(turned.kappa / mean.kappa, 1, 1e-9)
+    p:write(folder .. "/north.csv")
+    check.near(talus.poles(folder .. "/north.csv"):list()[2], { 40, 5.5 }, 1e-12)
+    check.near(talus.poles(folder .. "/north.csv", { declination = -10.5 }):list()[2], { 40, 355 }, 1e-12)
 end
 
 -- A joint set of measured poles: its planes have their attitudes, and lie along the mean pole.
@@ -173,6 +190,9 @@ for _, case in ipairs {
     { function() talus.poles(folder) end, "cannot be read" },
     { function() talus.poles() end, "poles: name a table of planes, or give a list of {dip, dip_direction}, not nil" },
     { function() talus.poles {} end, "the list: it has no row" },
+    { function() talus.poles(scattered, { declination = 181 }) end, "poles: declination = 181 is outside [-180, 180]" },
+    { function() talus.poles(scattered, { decl = 3 }) end, "poles: unknown parameter 'decl'" },
+    { function() talus.poles(scattered, 3) end, "poles: the second argument must be a table, not the number 3" },
     { function() talus.poles { { 95, 3 } } end, "poles, plane 1: dip = 95 is outside [0, 90]" },
     { function() talus.poles(scattered):sets(0) end, "the number of sets must be a whole number in [1, 180]" },
     { function() talus.poles(scattered):sets(2, { sed = 1 }) end, "unknown parameter 'sed'" },

@@ -224,8 +224,9 @@ static inline const char *tl_csv_row(tl_csv *c, const char *text)
         text += more;
     }
     if (cells != c->cells) {
-        tl_text_print(c->why, sizeof c->why, "line %zu has %zu cells, the line of names has %zu%s", c->line, cells,
-                      c->cells, c->separator == ',' ? " (decimal commas need semicolons between cells)" : "");
+        tl_text_print(c->why, sizeof c->why, "line %zu has %zu cell%s, the line of names has %zu%s", c->line, cells,
+                      cells == 1 ? "" : "s", c->cells,
+                      c->separator == ',' ? " (decimal commas need semicolons between cells)" : "");
         return NULL;
     }
     c->rows++;

@@ -35,6 +35,9 @@ local function check_name(where, name)
         fail("%s: the first argument is the name of the draw, a text without commas, not %s", where,
             arguments.describe(name))
     end
+    if name == "row" or name == "error" then
+        fail("%s: '%s' is the name of a column of every file of rows: give the draw another name", where, name)
+    end
     return name
 end
 
@@ -275,6 +278,9 @@ function draws.new(seed, row, latin)
         arguments.table(where, list, "the list")
         if #list == 0 then
             fail("%s: the list is empty", where)
+        end
+        if weights ~= nil and #arguments.table(where, weights, "the weights") > #list then
+            fail("%s: there are %d weights for a list of %d: give one for each", where, #weights, #list)
         end
         local sum, ends = 0, {}
         for i = 1, #list do

@@ -261,7 +261,28 @@ local function text_of(list)
     return table.concat(lines, "\n")
 end
 
-local function read(given)
+-- Planes measured by a compass, whose north lies `declination` east of true north.
+local function to_true_north(planes, declination)
+    if declination ~= 0 then
+        for _, plane in ipairs(planes) do
+            plane[2] = (plane[2] + declination) % 360
+        end
+        table.sort(planes, function(a, b)
+            for k = 1, 3 do
+                if a[k] ~= b[k] then
+                    return a[k] < b[k]
+                end
+            end
+            return false
+        end)
+    end
+    return planes
+end
+
+local function read(given, options)
+    options = arguments.table("poles", options or {}, "the second argument")
+    arguments.check_keys("poles", options, { "declination" })
+    local declination = arguments.number("poles", options, "declination", 0, -180, 180)
     local text, what
     if type(given) == "table" then
         text, what = text_of(given), "the list"
@@ -283,7 +304,7 @@ local function read(given)
     if not planes then
         fail("poles: %s: %s", what, sentence)
     end
-    return make(planes)
+    return make(to_true_north(planes, declination))
 end
 
 return arguments.call(read)
