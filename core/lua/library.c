@@ -392,7 +392,8 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .usage = "curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}  or  "
               "curve = talus.bolt_test{length = 2, shear = 0.01, dowel_stiffness = 1e8}",
      .doc = "Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. "
-            "Other entries are parameters of the element \"bolt\".",
+            "Other entries are parameters of the element \"bolt\". Its places, and in a pull its plate and pretension, "
+            "are those of the test.",
      .keys = bolt_test_keys,
      .title = "Fields of the curve",
      .verbs = bolt_test_results},

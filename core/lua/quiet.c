@@ -321,15 +321,6 @@ static void plan_incoming(lua_State *L, tl_model *model, tl_lua_quiet *plan)
     const bool input = tl_lua_option(L, plan->table, "input") != LUA_TNIL;
     lua_pop(L, 1);
     plan->kind = input ? INCOMING : NULL;
-    static const char *const behind[] = {"joint", "p_velocity", "s_velocity", "density"};
-    for (size_t k = 0; k < 4; k++) {
-        if (tl_lua_option(L, plan->table, behind[k]) != LUA_TNIL)
-            tl_lua_fail(L,
-                        "boundary: block %d is deformable, so what was cut off is rock as its own: leave out %s at its "
-                        "quiet face",
-                        (int)plan->block[0], behind[k]);
-        lua_pop(L, 1);
-    }
     if (!input)
         return;
     lua_newtable(L);

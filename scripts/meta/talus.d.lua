@@ -1638,7 +1638,7 @@ function talus.bolt_pattern(options) end
 ---@field yielded boolean whether the bolt has yielded at the end
 ---@field broken boolean whether it has broken
 
---- Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. Other entries are parameters of the element "bolt".
+--- Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. Other entries are parameters of the element "bolt". Its places, and in a pull its plate and pretension, are those of the test.
 ---
 ---     curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}  or  curve = talus.bolt_test{length = 2, shear = 0.01, dowel_stiffness = 1e8}
 ---@param options talus.BoltTestOptions
