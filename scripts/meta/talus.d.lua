@@ -427,11 +427,11 @@ function talus.help(topic) end
 ---@class (exact) talus.element.Bolt
 ---@field from talus.Vector m: The mouth, where the plate is.
 ---@field to talus.Vector m: The far end.
----@field diameter? number m, in [0.001, 1], default 0.025: Of the steel.
----@field young? number Pa, in [1e+08, 1e+13], default 2e+11: Young's modulus of the steel.
----@field yield? number N, in [1, 1e+12], default 240000: Tension and compression at which the steel yields.
+---@field diameter? number m, in (0, 1e+09], default 0.025: Of the steel.
+---@field young? number Pa, in (0, 1e+14], default 2e+11: Young's modulus of the steel.
+---@field yield? number N, in (0, 1e+12], default 240000: Tension and compression at which the steel yields.
 ---@field rupture_strain? number in [0.0001, 1e+06], default 0.1: Strain at which the steel breaks.
----@field grout_stiffness? number N/m2, in [100000, 1e+14], default 1000000000: Of the grout in shear, for each metre.
+---@field grout_stiffness? number N/m2, in (0, 1e+14], default 1000000000: Of the grout in shear, for each metre.
 ---@field grout_strength? number N/m, in [0, 1e+12], default 400000: Bond of the grout for each metre.
 ---@field grout_residual? number N/m, in [0, 1e+12]: What is left of the bond where it has slipped; without it, all.
 ---@field grout_friction? number deg, in [0, 90), default 0: Of the bond under the confining pressure.
@@ -443,19 +443,19 @@ function talus.help(topic) end
 ---@field pretension? number N, in [0, 1e+12], default 0: Pull at the mouth against the plate when installed.
 ---@field dowel_stiffness? number N/m, in [0, 1e+14], default 0: Of the dowel at each joint, across the bolt.
 ---@field dowel_strength? number N, in [0, 1e+12], default 0: Force that the dowel bears at most.
----@field dowel_rupture? number m, in [1e-06, 1e+06], default 0.05: Displacement across the bolt that cuts the dowel.
----@field active_length? number m, in [0.001, 1e+06]: Length that turns where a joint shears; without it, two diameters.
----@field spacing? number m, in [0.001, 1e+06], default 0.1: Of the nodes, at most.
+---@field dowel_rupture? number m, in (0, 1e+09], default 0.05: Displacement across the bolt that cuts the dowel.
+---@field active_length? number m, in (0, 1e+09]: Length that turns where a joint shears; without it, two diameters.
+---@field spacing? number m, in (0, 1e+09], default 0.1: Of the nodes, at most.
 
 --- A bolt that is grouted at its far end only.
 ---@class (exact) talus.element.Anchor
 ---@field from talus.Vector m: The mouth, where the plate is.
 ---@field to talus.Vector m: The far end.
----@field diameter? number m, in [0.001, 1], default 0.025: Of the steel.
----@field young? number Pa, in [1e+08, 1e+13], default 2e+11: Young's modulus of the steel.
----@field yield? number N, in [1, 1e+12], default 240000: Tension and compression at which the steel yields.
+---@field diameter? number m, in (0, 1e+09], default 0.025: Of the steel.
+---@field young? number Pa, in (0, 1e+14], default 2e+11: Young's modulus of the steel.
+---@field yield? number N, in (0, 1e+12], default 240000: Tension and compression at which the steel yields.
 ---@field rupture_strain? number in [0.0001, 1e+06], default 0.1: Strain at which the steel breaks.
----@field grout_stiffness? number N/m2, in [100000, 1e+14], default 1000000000: Of the grout in shear, for each metre.
+---@field grout_stiffness? number N/m2, in (0, 1e+14], default 1000000000: Of the grout in shear, for each metre.
 ---@field grout_strength? number N/m, in [0, 1e+12], default 400000: Bond of the grout for each metre.
 ---@field grout_residual? number N/m, in [0, 1e+12]: What is left of the bond where it has slipped; without it, all.
 ---@field grout_friction? number deg, in [0, 90), default 0: Of the bond under the confining pressure.
@@ -467,9 +467,9 @@ function talus.help(topic) end
 ---@field pretension? number N, in [0, 1e+12], default 0: Pull at the mouth against the plate when installed.
 ---@field dowel_stiffness? number N/m, in [0, 1e+14], default 0: Of the dowel at each joint, across the bolt.
 ---@field dowel_strength? number N, in [0, 1e+12], default 0: Force that the dowel bears at most.
----@field dowel_rupture? number m, in [1e-06, 1e+06], default 0.05: Displacement across the bolt that cuts the dowel.
----@field active_length? number m, in [0.001, 1e+06]: Length that turns where a joint shears; without it, two diameters.
----@field spacing? number m, in [0.001, 1e+06], default 0.1: Of the nodes, at most.
+---@field dowel_rupture? number m, in (0, 1e+09], default 0.05: Displacement across the bolt that cuts the dowel.
+---@field active_length? number m, in (0, 1e+09]: Length that turns where a joint shears; without it, two diameters.
+---@field spacing? number m, in (0, 1e+09], default 0.1: Of the nodes, at most.
 
 --- Shotcrete on outer faces of blocks: a shell that a bond holds.
 ---@class (exact) talus.element.Liner

@@ -152,7 +152,8 @@ refuse({ pretension = 3e5 }, "pretension = 300000 N is above what steel (240000 
 refuse({ pretension = 1e5, grout_strength = 1e4 }, "pulls the bolt out of its grout")
 refuse({ pretension = 1e5, young = 1e8 }, "pretension = 100000 N strains the steel by 1.6")
 refuse({ spacing = 0.002 }, "more than 512 nodes")
-refuse({ diameter = 25 }, "diameter")
+refuse({ diameter = 25 }, "diameter = 25 m must be below the length of the bolt, 2.5 m")
+refuse({ diameter = 0 }, "diameter = 0")
 
 -- What holds nothing is said.
 local path = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/bolt.lua"

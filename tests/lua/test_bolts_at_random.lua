@@ -79,7 +79,7 @@ local function forms(seed)
         { name = "turned", matrix = shapes.attitude(random) },
         { name = "turned and mirrored", matrix = shapes.product(mirror, shapes.attitude(random)) },
         { name = "in units of 4 m", unit = 0.25 },
-        { name = "in units of 0.2 m", unit = 5 },
+        { name = "in millimetres", unit = 1000 },
         { name = "moved by 1 km", shift = { 1e3 * d[1], 1e3 * d[2], 1e3 * d[3] } },
         { name = "in the other order", reversed = true },
     }

@@ -47,6 +47,9 @@ typedef struct params {
 #define MOST 1e12
 /* Limit: of stiffness, N/m and N/m2, for the same reason. */
 #define STIFFEST 1e14
+/* Limit: of lengths, in any unit. */
+#define LONGEST 1e9
+#define ABOVE TL_PARAM_MIN_OPEN
 #define PLACED TL_PARAM_PLACE
 /* Rows of reals: `more` are flags. */
 #define REAL(member, unit, doc, least, most, more, ...)                                                                \
@@ -58,11 +61,11 @@ typedef struct params {
         TL_PARAM(TL_PARAM_VEC3, params, from, "m", "The mouth, where the plate is.",                                   \
                  .flags = TL_PARAM_REQUIRED | PLACED),                                                                 \
             TL_PARAM(TL_PARAM_VEC3, params, to, "m", "The far end.", .flags = TL_PARAM_REQUIRED | PLACED),             \
-            REAL(diameter, "m", "Of the steel.", 1e-3, 1, 0, .def = {0.025}),                                          \
-            REAL(young, "Pa", "Young's modulus of the steel.", 1e8, 1e13, 0, .def = {200e9}),                          \
-            STRONG(yield, "N", "Tension and compression at which the steel yields.", 1, 0, .def = {2.4e5}),            \
+            REAL(diameter, "m", "Of the steel.", 0, LONGEST, ABOVE, .def = {0.025}),                                   \
+            REAL(young, "Pa", "Young's modulus of the steel.", 0, STIFFEST, ABOVE, .def = {200e9}),                    \
+            STRONG(yield, "N", "Tension and compression at which the steel yields.", 0, ABOVE, .def = {2.4e5}),        \
             REAL(rupture_strain, "", "Strain at which the steel breaks.", 1e-4, 1e6, 0, .def = {0.1}),                 \
-            REAL(grout_stiffness, "N/m2", "Of the grout in shear, for each metre.", 1e5, STIFFEST, 0, .def = {1e9}),   \
+            REAL(grout_stiffness, "N/m2", "Of the grout in shear, for each metre.", 0, STIFFEST, ABOVE, .def = {1e9}), \
             STRONG(grout_strength, "N/m", "Bond of the grout for each metre.", 0, 0, .def = {4e5}),                    \
             STRONG(grout_residual, "N/m", "What is left of the bond where it has slipped; without it, all.", 0,        \
                    TL_PARAM_OPTIONAL, .alias = NULL),                                                                  \
@@ -79,11 +82,11 @@ typedef struct params {
             REAL(dowel_stiffness, "N/m", "Of the dowel at each joint, across the bolt.", 0, STIFFEST, 0,               \
                  .alias = NULL),                                                                                       \
             STRONG(dowel_strength, "N", "Force that the dowel bears at most.", 0, 0, .alias = NULL),                   \
-            REAL(dowel_rupture, "m", "Displacement across the bolt that cuts the dowel.", 1e-6, 1e6, 0,                \
+            REAL(dowel_rupture, "m", "Displacement across the bolt that cuts the dowel.", 0, LONGEST, ABOVE,           \
                  .def = {0.05}),                                                                                       \
-            REAL(active_length, "m", "Length that turns where a joint shears; without it, two diameters.", 1e-3, 1e6,  \
-                 TL_PARAM_OPTIONAL, .alias = NULL),                                                                    \
-            REAL(spacing, "m", "Of the nodes, at most.", 1e-3, 1e6, PLACED, .def = {0.1})                              \
+            REAL(active_length, "m", "Length that turns where a joint shears; without it, two diameters.", 0, LONGEST, \
+                 ABOVE | TL_PARAM_OPTIONAL, .alias = NULL),                                                            \
+            REAL(spacing, "m", "Of the nodes, at most.", 0, LONGEST, ABOVE | PLACED, .def = {0.1})                     \
     }
 
 static const tl_param bolt_params[] = BOLT_PARAMS(0);
@@ -288,6 +291,9 @@ static tl_status place(const tl_element_host *host, const void *given)
     if (!(distance(p->from, p->to) > 0))
         return host->fail(host, TL_E_ARGUMENT, "from and to are the same point (%g, %g, %g)", p->from.x, p->from.y,
                           p->from.z);
+    if (!(p->diameter < distance(p->from, p->to)))
+        return host->fail(host, TL_E_ARGUMENT, "diameter = %g m must be below the length of the bolt, %g m",
+                          p->diameter, distance(p->from, p->to));
     /* Strengths may be less later on: the bolt yields then. */
     const double plate = p->plate_stiffness > 0 ? p->plate_strength : 0;
     if (p->pretension > fmin(p->yield, plate))

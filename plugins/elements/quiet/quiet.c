@@ -47,7 +47,7 @@ static tl_status place_face(const tl_element_host *host, const tl_element_face *
     tl_element_node nodes[POINTS];
     half_space_points(f, at);
     for (int i = 0; i < POINTS; i++)
-        nodes[i] = (tl_element_node){f->block, at[i], {0, 0, 0}, row[2] / POINTS}; /* the element has the normal */
+        nodes[i] = (tl_element_node){f->block, at[i], f->normal, row[2] / POINTS};
     const double state[] = {f->normal.x, f->normal.y, f->normal.z, f->face + 1, row[3], row[4]};
     return host->add(
         host, &(tl_new_element){.size = sizeof(tl_new_element), .nodes = nodes, .count = POINTS, .state = state});
