@@ -88,7 +88,7 @@
  * Test: lua/test_safety_rock. */
 #define STILL 0.005
 #define STILLS 4
-/* Cost only: looks after which bodies that are held for others are let go. */
+/* Limit: looks after which bodies that are held for others are let go: they may help what chatters to rest. */
 #define HELD_LOOKS 64
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
 #define STEPS_A_BLOCK 16
