@@ -160,9 +160,7 @@ static void put_grout(chain *c, uint32_t k, const params *p, const steel *s, dou
 static void put_steel(chain *c, uint32_t k, const params *p, const steel *s, double h, double gauge)
 {
     c->stiff[k] = s->ea / larger(h, SHORT * p->diameter);
-    c->even[k] = s->ea / gauge;
     c->gauge[k] = gauge;
-    c->even[k + 1] = c->even[k];
     c->limit[k] = p->yield;
 }
 
@@ -508,7 +506,7 @@ static void lay(bolt *t, const params *p, const steel *s, const tl_element_batch
     c->seat = b->element_state[SEAT][e];
 }
 
-/* Steel of all segments, whose lengths and those of their strains are known; `cut`: 0 where it is whole. */
+/* Steel of all segments, whose lengths are known; `cut`: 0 where it is whole. */
 TL_VECTORIZED static void put_all_steel(bolt *t, const params *p, const steel *s, const double *restrict cut)
 {
     const double least = SHORT * p->diameter, ea = s->ea, yield = p->yield;
@@ -516,10 +514,8 @@ TL_VECTORIZED static void put_all_steel(bolt *t, const params *p, const steel *s
 #pragma omp simd
     for (uint32_t k = 0; k < c->count - 1; k++) {
         c->stiff[k] = ea / larger(t->h[k], least);
-        c->even[k] = ea / c->gauge[k];
         c->limit[k] = cut[k] != 0 ? 0 : yield;
     }
-    c->even[c->count - 1] = c->even[c->count - 2];
 }
 
 /* Displacement of the rock along the bolt, from its first node on, and what follows of the steel. */

@@ -17,7 +17,7 @@ typedef struct chain {
     double bond[CHAIN_ROOM], residual[CHAIN_ROOM];            /* N */
     double bears[CHAIN_ROOM];                                 /* N, the one of them that counts */
     double worn[CHAIN_ROOM];                                  /* 1: it bears the residual; else 0 */
-    double stiff[CHAIN_ROOM], even[CHAIN_ROOM];               /* N/m, of segments: E A / h and E A / gauge */
+    double stiff[CHAIN_ROOM];                                 /* N/m, of segments: E A / h */
     double plastic[CHAIN_ROOM], limit[CHAIN_ROOM];
     double gauge[CHAIN_ROOM];              /* m, over which the strain counts */
     double seat, plate_stiff, plate_limit; /* the plate is at node 0 */
